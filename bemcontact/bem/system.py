@@ -21,6 +21,7 @@ from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.influence import Collocation, Influence, InfluenceRows
 from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import BoundaryValues, Mesh
+from bemcontact.bem.response import Response
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
@@ -305,6 +306,14 @@ class System:
         W[self.equations.row[used]] = self.motions.displacement(at)[used]
         return W
 
+    def contact_last(self) -> tuple[IntArray, int]:
+        """All columns (size,), those of displacements at contact points and of the border last, and how many these are."""
+        wanted = np.zeros(self.size, bool)
+        wanted[self.unknowns.size :] = True
+        at_points = self.unknowns.displacement[self.points.node]
+        wanted[at_points[at_points >= 0]] = True
+        return np.argsort(wanted, kind="stable"), int(wanted.sum())
+
     def fields(self, z: Array, loading: Loading | None) -> tuple[Array, Array]:
         """Displacement (N, 2) [L] and traction (m, 3, 2) [p] of unknowns z and all prescribed ones, less pressures.
 
@@ -322,7 +331,7 @@ class System:
 
 
 LARGEST_COPY = 2.5e8
-"""Largest matrix in bytes of which a copy is kept for the refinement; of larger ones the rows are computed anew."""
+"""Largest matrix in bytes that is kept beside its factors; of larger ones rows are computed anew for the refinement."""
 SINGULAR = 1e-15
 """Reciprocal condition number below which the system counts as singular."""
 
@@ -348,36 +357,38 @@ def assemble(system: System) -> tuple[Array, Array]:
     return matrix, right
 
 
-def solve_system(system: System) -> Array:
-    """Solve (size, s + n) for loads and unit pressures: LU in place, then one refinement.
-
-    `SingularSystemError` if the equations have no unique solution.
-    """
+def solve_system(system: System) -> Response:
+    """Solve for loads and unit pressures; `SingularSystemError` if the equations have no unique solution."""
     matrix, right = assemble(system)
-    kept = matrix.copy(order="F") if matrix.nbytes <= LARGEST_COPY else None
-    lu = LU.of(matrix, overwrite=True)
+    keep = matrix.nbytes <= LARGEST_COPY
+    order, count = system.contact_last() if keep else (np.arange(system.size), system.size)
+    lu = LU.of(matrix.T[order].T if keep else matrix, overwrite=True)
     if lu.reciprocal_condition < SINGULAR:
         raise SingularSystemError(
             "the equations of the body have no unique solution (reciprocal condition number "
             f"{lu.reciprocal_condition:.1e}); look for coincident edges, or for neighboring elements of very different "
             "length"
         )
-    return lu.solve(right, partial(residual, system) if kept is None else lambda x: right - kept @ x)
+    left = (lambda x, weights: right @ weights - matrix @ x) if keep else partial(residual, system)
+    return Response.of(lu, order, count, right, len(system.loadings), left)
 
 
-def residual(system: System, response: Array) -> Array:
-    """Right sides less matrix times response, (size, s + n), from rows computed anew: no second matrix is kept."""
+def residual(system: System, solution: Array, weights: Array) -> Array:
+    """B W - A x (size, w) for solutions x (size, w) and weights W (s + n, w), from rows computed anew.
+
+    No second matrix is kept for it.
+    """
     unknowns = system.unknowns.size
-    z, s = response[:unknowns], response[unknowns:]
-    result = np.zeros_like(response, order="F")
+    z, s = solution[:unknowns], solution[unknowns:]
+    result = np.zeros_like(solution, order="F")
 
     def place(block: InfluenceRows) -> None:
         for rows in system.rows(block):
-            first = 0
+            first, left = 0, weights.T @ rows.right
             for part in rows.left:
-                rows.right[:] -= z[first : first + len(part)].T @ part
+                left -= z[first : first + len(part)].T @ part
                 first += len(part)
-            result[rows.at] = rows.right.T
+            result[rows.at] = left.T
 
     system.influence.each_block(system.equations.collocation, place)
     result[:unknowns] -= system.border @ s
