@@ -1,7 +1,7 @@
 """The response X of a body to loads and unit pressures, A X = B, of which only the rows that contact needs are solved.
 
-In A Q = P⁻¹ L U the columns of the displacements at contact points come last. Their rows of X follow from the last block
-of U and of L⁻¹P B. The whole solution follows for one combination of loads and pressures at a time.
+In A Q = P⁻¹ L U the columns of the displacements at contact points come last. Their rows of X follow from the last
+block of U and of L⁻¹P B. The whole solution follows for one combination of loads and pressures at a time.
 
 Iterative refinement is made of each load, and of one combination of unit pressures. Only where this one changes by more
 than round-off are all pressures refined.

@@ -307,7 +307,7 @@ class System:
         return W
 
     def contact_last(self) -> tuple[IntArray, int]:
-        """All columns (size,), those of displacements at contact points and of the border last, and how many these are."""
+        """All columns (size,), those of displacements at contact points and of the border last; how many these are."""
         wanted = np.zeros(self.size, bool)
         wanted[self.unknowns.size :] = True
         at_points = self.unknowns.displacement[self.points.node]
