@@ -13,7 +13,6 @@ from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy import sparse
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import kernels, reference_element
@@ -130,14 +129,20 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Syst
 
 
 class _Carried(NamedTuple):
-    """Columns of G that belong to some unknowns: rows `at` of G transposed, to be summed by a sparse matrix."""
+    """Columns of G that belong to some unknowns: sums of rows of G transposed with factors.
 
-    at: IntArray
-    matrix: sparse.csr_array
+    Each part has every column once at most: rows of G transposed, columns, and factors (q, 1).
+    """
+
+    count: int
+    parts: Sequence[tuple[IntArray, IntArray, Array]]
 
     def times(self, G: Array) -> Array:
         """Columns of the unknowns (…, q) from G transposed (3e, q)."""
-        return self.matrix @ G[self.at]
+        result = np.zeros((self.count, G.shape[1]))
+        for rows, column, factor in self.parts:
+            result[column] += factor * G[rows]
+        return result
 
 
 class SystemRows(NamedTuple):
@@ -248,10 +253,14 @@ class System:
 
     def _carried(self, element: IntArray, local: IntArray, column: IntArray, factors: Array) -> _Carried:
         """Jacobian times the factor of its column (q,), at (element, local node) pairs (q,); several may be at one."""
-        carried = self._jacobians.shape[0]
         values = self._jacobians[element, local] * factors[column]
-        at, index = np.unique(local * carried + element, return_inverse=True)
-        return _Carried(at, sparse.csr_array((values, (column, index)), shape=(len(factors), len(at))))
+        order = np.argsort(column, kind="stable")
+        begins = np.searchsorted(column[order], column[order])
+        number = np.arange(len(order)) - begins  # of a place among those of the same column
+        rows, parts = local * len(self._jacobians) + element, []
+        for some in (order[number == i] for i in range(number.max(initial=-1) + 1)):
+            parts.append((rows[some], column[some], values[some, None]))
+        return _Carried(len(factors), parts)
 
     def rows(self, block: InfluenceRows) -> Iterator[SystemRows]:
         """Turn rows of F and G into rows of the system: the x equations of the block, then its y equations."""
