@@ -22,6 +22,7 @@ from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import BoundaryValues, Mesh
 from bemcontact.bem.response import Response
 from bemcontact.bem.rigid_motions import RigidMotions
+from bemcontact.blas_threads import one_thread
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
 from bemcontact.problem.material import Material
@@ -134,12 +135,12 @@ class _Carried(NamedTuple):
     Each part has every column once at most: rows of G transposed, columns, and factors (q, 1).
     """
 
-    count: int
+    columns: int
     parts: Sequence[tuple[IntArray, IntArray, Array]]
 
     def times(self, G: Array) -> Array:
         """Columns of the unknowns (…, q) from G transposed (3e, q)."""
-        result = np.zeros((self.count, G.shape[1]))
+        result = np.zeros((self.columns, G.shape[1]))
         for rows, column, factor in self.parts:
             result[column] += factor * G[rows]
         return result
@@ -371,7 +372,8 @@ def solve_system(system: System) -> Response:
     matrix, right = assemble(system)
     keep = matrix.nbytes <= LARGEST_COPY
     order, count = system.contact_last() if keep else (np.arange(system.size), system.size)
-    lu = LU.of(matrix.T[order].T if keep else matrix, overwrite=True)
+    with one_thread.lifted(system.size):
+        lu = LU.of(matrix.T[order].T if keep else matrix, overwrite=True)
     if lu.reciprocal_condition < SINGULAR:
         raise SingularSystemError(
             "the equations of the body have no unique solution (reciprocal condition number "
@@ -379,7 +381,8 @@ def solve_system(system: System) -> Response:
             "length"
         )
     left = (lambda x, weights: right @ weights - matrix @ x) if keep else partial(residual, system)
-    return Response.of(lu, order, count, right, len(system.loadings), left)
+    with one_thread.lifted(system.size):
+        return Response.of(lu, order, count, right, len(system.loadings), left)
 
 
 def residual(system: System, solution: Array, weights: Array) -> Array:
