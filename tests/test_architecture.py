@@ -54,7 +54,12 @@ EXCEPTIONS = {
 
 HOME = {
     "yaml": ("bemcontact.spec",),
-    "cvxpy": ("bemcontact.formulations.clarabel", "bemcontact.formulations.qp3", "bemcontact.modelling"),
+    "cvxpy": (
+        "bemcontact.formulations.clarabel",
+        "bemcontact.formulations.piqp",
+        "bemcontact.formulations.qp3",
+        "bemcontact.modelling",
+    ),
     "clarabel": ("bemcontact.formulations.clarabel",),
     "matplotlib": ("bemcontact.report.figures",),
     "typer": ("bemcontact.cli",),
