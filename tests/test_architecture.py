@@ -11,12 +11,13 @@ PACKAGE = TESTS.parent / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-FOUNDATION = ("errors", "checks", "arrays", "serialization", "options", "version", "files")
+FOUNDATION = ("errors", "checks", "arrays", "blas_threads", "serialization", "options", "version", "files")
 
 ROOMS = {
     "errors": (),
     "checks": ("errors",),
     "arrays": ("errors", "checks"),
+    "blas_threads": (),
     "serialization": ("errors", "checks"),
     "options": ("errors", "checks"),
     "version": (),
@@ -25,7 +26,7 @@ ROOMS = {
     "spec": ("errors", "checks", "files", "problem"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problem", "contact"),
-    "formulations.local_solver": ("errors", "checks", "arrays"),
+    "formulations.local_solver": ("errors", "checks", "arrays", "blas_threads"),
     "formulations": (*FOUNDATION, "contact", "formulations.local_solver"),
     "assessment": (*FOUNDATION, "contact"),
     "adaptivity": (*FOUNDATION, "problem", "contact", "bem", "formulations", "assessment"),
@@ -53,7 +54,12 @@ EXCEPTIONS = {
 
 HOME = {
     "yaml": ("bemcontact.spec",),
-    "cvxpy": ("bemcontact.formulations.clarabel", "bemcontact.formulations.qp3", "bemcontact.modelling"),
+    "cvxpy": (
+        "bemcontact.formulations.clarabel",
+        "bemcontact.formulations.piqp",
+        "bemcontact.formulations.qp3",
+        "bemcontact.modelling",
+    ),
     "clarabel": ("bemcontact.formulations.clarabel",),
     "matplotlib": ("bemcontact.report.figures",),
     "typer": ("bemcontact.cli",),

@@ -9,6 +9,7 @@ from bemcontact.analysis.solve import Prepared, Progress, Stopwatch, assessed, e
 from bemcontact.analysis.study import MeshLevel, Settings, Study
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Attempt
+from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import ensure_callable
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import KeyPath, NotConvexError, OptionError, SolverError
@@ -34,6 +35,7 @@ COMMENTS = (("tolerance",), ("reason",), ("source",))
 """Keys of a reference that do not change what it says."""
 
 
+@one_thread
 def compare(
     problem: Problem | CondensedContact,
     formulations: Sequence[FormulationName | str] | str = COMPARED,

@@ -15,6 +15,7 @@ from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
 from bemcontact.analysis.variation import Variation, case_of
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
+from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import real_number, text_of_argument, texts
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
@@ -37,6 +38,7 @@ NOTHING = 1e-13
 """Part of the largest entry that is the round-off of an entry that should be zero."""
 
 
+@one_thread
 def follow(problem: Problem, key: str, to: float, start: float | None = None) -> ParameterPath:
     """Follow the contact state while one value of the problem changes, exactly.
 
@@ -80,6 +82,7 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
     )  # fmt: skip
 
 
+@one_thread
 def sensitivities(
     problem: Problem | CondensedContact, changes: Mapping[str, Change] | Sequence[str] | None = None
 ) -> Sensitivities:

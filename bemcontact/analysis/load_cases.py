@@ -15,6 +15,7 @@ from bemcontact.analysis.solve import (
     mesh_of,
 )
 from bemcontact.assessment.accuracy import together
+from bemcontact.blas_threads import one_thread
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.multistart import solve_contact
 from bemcontact.formulations.search import with_start_read
@@ -101,6 +102,7 @@ class CaseResults(Recorded):
         )
 
 
+@one_thread
 def solve_cases(
     problem: Problem,
     formulation: FormulationName | str = FormulationName.COMPLEMENTARITY,
@@ -130,6 +132,7 @@ def solve_cases(
     return solve_cases_with(read, asking(problem, accuracy))
 
 
+@one_thread
 def solve_cases_with(options: SolveOptions, problem: Problem, progress: Progress | None = None) -> CaseResults:
     """Solve all load cases and combinations with options, as `solve_cases` does.
 

@@ -11,6 +11,7 @@ from bemcontact.analysis import compare as comparing
 from bemcontact.analysis.solve import Progress
 from bemcontact.analysis.study import LevelRecord, MeshLevel, Study, versions
 from bemcontact.arrays import Array
+from bemcontact.blas_threads import one_thread
 from bemcontact.contact.record import UnitsRecord
 from bemcontact.errors import SpecError
 from bemcontact.options import ComparisonOptions, FormulationName
@@ -248,6 +249,7 @@ class Reproduction(Recorded):
         )
 
 
+@one_thread
 def reproduce(
     refine: Sequence[int] = (1, 4), progress: Progress | None = None, problems: Sequence[PaperProblem] = PROBLEMS
 ) -> Reproduction:

@@ -17,6 +17,7 @@ from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
 from bemcontact.bem.condense import Condensation, boundary_state
 from bemcontact.bem.surface_gaps import surface_gaps
+from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import ensure_callable, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
@@ -66,6 +67,7 @@ class Stopwatch:
             self.progress(name, now)
 
 
+@one_thread
 def condense(problem: Problem, *, accuracy: AskedAccuracy = "stated") -> CondensedContact:
     """Condense a body to its contact points.
 
@@ -116,6 +118,7 @@ def ensure_acting(problem: Problem | CondensedContact) -> None:
         raise ProblemError(Issue(path=("load_cases",), message=message))
 
 
+@one_thread
 def solve(
     problem: Problem | CondensedContact,
     formulation: FormulationName | str = FormulationName.COMPLEMENTARITY,
@@ -162,6 +165,7 @@ def solve(
     return solve_with(read, problem, progress)
 
 
+@one_thread
 def solve_with(
     options: SolveOptions,
     problem: Problem | CondensedContact,
@@ -264,6 +268,7 @@ def assessed(
     )
 
 
+@one_thread
 def random_starts(
     problem: Problem | CondensedContact,
     formulation: FormulationName | str = FormulationName.QP1,

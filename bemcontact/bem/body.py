@@ -342,7 +342,7 @@ def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: K
     system = System(
         mesh=mesh, material=problem.material, points=ContactPoints.none(mesh), motions=motions, loadings=(loading,),
     )  # fmt: skip
-    displacement, _ = system.fields(solve_system(system)[:, 0], loading)
+    displacement, _ = system.fields(solve_system(system).combined(np.ones(1)), loading)
     return displacement
 
 

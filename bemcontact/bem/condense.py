@@ -11,6 +11,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.bem.body import Body, ensure_held
 from bemcontact.bem.mesh import BoundaryState
+from bemcontact.bem.response import Response
 from bemcontact.bem.rigid_motions import all_rigid_motions
 from bemcontact.bem.system import System, solve_system
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -26,14 +27,14 @@ class Condensation:
     ----------
     body : Body
     system : System
-    response : (unknowns + border, 1 + c + n) solution for each loading alone and for unit pressures, dimensionless
+    response : solutions for each loading alone, of which there are 1 + c, and for unit pressures, dimensionless
     contact : CondensedContact
     gauge : Gauge
     """
 
     body: Body
     system: System
-    response: Array
+    response: Response
     contact: CondensedContact
     gauge: Gauge
 
@@ -118,13 +119,13 @@ def condense(body: Body) -> Condensation:
     return Condensation(body=body, system=system, response=response, contact=contact, gauge=gauge).acting()
 
 
-def _observe(system: System, response: Array) -> Array:
+def _observe(system: System, response: Response) -> Array:
     """Normal displacement (n, s + n) over L0 at the contact points due to the unknowns."""
     points = system.points
-    result = np.zeros((len(points), response.shape[1]))
+    result = np.zeros((len(points), response.columns))
     for normal, column in zip(points.normals.T, system.unknowns.displacement[points.node].T, strict=True):
         free = column >= 0
-        result[free] += normal[free, None] * response[column[free]]
+        result[free] += normal[free, None] * response.rows(column[free])
     return result
 
 
@@ -153,7 +154,7 @@ def _boundary(
 ) -> tuple[Array, Array]:
     """Displacement and traction of a pressure, of amplitudes, and of the loadings by these factors, if any."""
     body, system, gauge = condensation.body, condensation.system, condensation.gauge
-    z = condensation.response @ np.append(factors, pressure / system.stress)
+    z = condensation.response.combined(np.append(factors, pressure / system.stress))
     amplitudes = rigid_amplitudes.copy()
     amplitudes[: len(gauge.shift_load)] -= gauge.shift_load @ factors + gauge.shift_pressure @ pressure
     displacement, traction = system.fields(z, body.acting if factors.any() else None)
@@ -176,7 +177,8 @@ def _force_balance(condensation: Condensation, traction: Array) -> float:
 def _slack(condensation: Condensation, pressure: Array) -> float:
     """Border unknowns of the solution, over the sum of the magnitudes that each load and pressure contributes."""
     scaled = np.append(condensation.factors, pressure / condensation.system.stress)
-    slack = condensation.response[condensation.system.unknowns.size :]
+    system = condensation.system
+    slack = condensation.response.rows(np.arange(system.unknowns.size, system.size))
     if len(slack) == 0:
         return 0.0
     total = abs(slack) @ abs(scaled)

@@ -10,7 +10,6 @@ Stresses are divided by the shear modulus.
 
 import itertools
 import os
-import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -18,13 +17,13 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import compiled, kernels, reference_element
 from bemcontact.bem.kernels import Components, GaussRule
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.skeleton import RATIO, disc, skeleton
+from bemcontact.blas_threads import one_thread
 
 ROWS_PER_BLOCK = 160
 LARGEST_BLOCK = 400_000
@@ -33,8 +32,6 @@ CACHE_SIZE = 24_000
 """Kernel evaluations at a time: about ten arrays of them stay in the second-level cache."""
 WORTH_COMPILING = 4000
 """Degrees of freedom from which numba is used if it is installed: for fewer, its import takes longer than it saves."""
-ALONE = threading.Lock()
-"""Lock for the number of BLAS threads of the process: two assemblies at once would restore wrong numbers."""
 SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which the elements that are far from a block of points share a rule."""
 
@@ -185,7 +182,7 @@ class Influence:
             for rows in some:
                 use(self._block(collocation, rows, space))
 
-        with ALONE, threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(workers) as pool:
+        with one_thread, ThreadPoolExecutor(workers) as pool:
             for _ in pool.map(work, [blocks[first::workers] for first in range(workers)]):
                 pass
 

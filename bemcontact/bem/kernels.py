@@ -134,8 +134,15 @@ def gauss_rule(order: int, factor: Factors) -> GaussRule:
 
 def numerators(tau: ComplexArray, tangent: ComplexArray) -> Array:
     """|τ|², Re τ², Im(conj(τ) ζ'), Im τ², Re(conj(τ) ζ') (5, n, p) at Gauss points τ, ζ' (n, p) of p pairs."""
-    square, along = tau * tau, tau.conj() * tangent
-    return np.stack([(tau * tau.conj()).real, square.real, along.imag, square.imag, along.real])
+    x, y, dx, dy = tau.real, tau.imag, tangent.real, tangent.imag
+    result = np.empty((5, *tau.shape))
+    xx, yy = x * x, y * y
+    np.add(xx, yy, out=result[0])
+    np.subtract(xx, yy, out=result[1])
+    np.subtract(x * dy, y * dx, out=result[2])
+    np.multiply(2 * x, y, out=result[3])
+    np.add(x * dx, y * dy, out=result[4])
+    return result
 
 
 def numerator_polynomials(zeta: ComplexArray, tangent: ComplexArray) -> Array:

@@ -13,7 +13,6 @@ from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy import sparse
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import kernels, reference_element
@@ -21,7 +20,9 @@ from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.influence import Collocation, Influence, InfluenceRows
 from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import BoundaryValues, Mesh
+from bemcontact.bem.response import Response
 from bemcontact.bem.rigid_motions import RigidMotions
+from bemcontact.blas_threads import one_thread
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
 from bemcontact.problem.material import Material
@@ -129,14 +130,20 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Syst
 
 
 class _Carried(NamedTuple):
-    """Columns of G that belong to some unknowns: rows `at` of G transposed, to be summed by a sparse matrix."""
+    """Columns of G that belong to some unknowns: sums of rows of G transposed with factors.
 
-    at: IntArray
-    matrix: sparse.csr_array
+    Each part has every column once at most: rows of G transposed, columns, and factors (q, 1).
+    """
+
+    columns: int
+    parts: Sequence[tuple[IntArray, IntArray, Array]]
 
     def times(self, G: Array) -> Array:
         """Columns of the unknowns (…, q) from G transposed (3e, q)."""
-        return self.matrix @ G[self.at]
+        result = np.zeros((self.columns, G.shape[1]))
+        for rows, column, factor in self.parts:
+            result[column] += factor * G[rows]
+        return result
 
 
 class SystemRows(NamedTuple):
@@ -247,10 +254,14 @@ class System:
 
     def _carried(self, element: IntArray, local: IntArray, column: IntArray, factors: Array) -> _Carried:
         """Jacobian times the factor of its column (q,), at (element, local node) pairs (q,); several may be at one."""
-        carried = self._jacobians.shape[0]
         values = self._jacobians[element, local] * factors[column]
-        at, index = np.unique(local * carried + element, return_inverse=True)
-        return _Carried(at, sparse.csr_array((values, (column, index)), shape=(len(factors), len(at))))
+        order = np.argsort(column, kind="stable")
+        begins = np.searchsorted(column[order], column[order])
+        number = np.arange(len(order)) - begins  # of a place among those of the same column
+        rows, parts = local * len(self._jacobians) + element, []
+        for some in (order[number == i] for i in range(number.max(initial=-1) + 1)):
+            parts.append((rows[some], column[some], values[some, None]))
+        return _Carried(len(factors), parts)
 
     def rows(self, block: InfluenceRows) -> Iterator[SystemRows]:
         """Turn rows of F and G into rows of the system: the x equations of the block, then its y equations."""
@@ -305,6 +316,14 @@ class System:
         W[self.equations.row[used]] = self.motions.displacement(at)[used]
         return W
 
+    def contact_last(self) -> tuple[IntArray, int]:
+        """All columns (size,), those of displacements at contact points and of the border last; how many these are."""
+        wanted = np.zeros(self.size, bool)
+        wanted[self.unknowns.size :] = True
+        at_points = self.unknowns.displacement[self.points.node]
+        wanted[at_points[at_points >= 0]] = True
+        return np.argsort(wanted, kind="stable"), int(wanted.sum())
+
     def fields(self, z: Array, loading: Loading | None) -> tuple[Array, Array]:
         """Displacement (N, 2) [L] and traction (m, 3, 2) [p] of unknowns z and all prescribed ones, less pressures.
 
@@ -322,7 +341,7 @@ class System:
 
 
 LARGEST_COPY = 2.5e8
-"""Largest matrix in bytes of which a copy is kept for the refinement; of larger ones the rows are computed anew."""
+"""Largest matrix in bytes that is kept beside its factors; of larger ones rows are computed anew for the refinement."""
 SINGULAR = 1e-15
 """Reciprocal condition number below which the system counts as singular."""
 
@@ -348,36 +367,40 @@ def assemble(system: System) -> tuple[Array, Array]:
     return matrix, right
 
 
-def solve_system(system: System) -> Array:
-    """Solve (size, s + n) for loads and unit pressures: LU in place, then one refinement.
-
-    `SingularSystemError` if the equations have no unique solution.
-    """
+def solve_system(system: System) -> Response:
+    """Solve for loads and unit pressures; `SingularSystemError` if the equations have no unique solution."""
     matrix, right = assemble(system)
-    kept = matrix.copy(order="F") if matrix.nbytes <= LARGEST_COPY else None
-    lu = LU.of(matrix, overwrite=True)
+    keep = matrix.nbytes <= LARGEST_COPY
+    order, count = system.contact_last() if keep else (np.arange(system.size), system.size)
+    with one_thread.lifted(system.size):
+        lu = LU.of(matrix.T[order].T if keep else matrix, overwrite=True)
     if lu.reciprocal_condition < SINGULAR:
         raise SingularSystemError(
             "the equations of the body have no unique solution (reciprocal condition number "
             f"{lu.reciprocal_condition:.1e}); look for coincident edges, or for neighboring elements of very different "
             "length"
         )
-    return lu.solve(right, partial(residual, system) if kept is None else lambda x: right - kept @ x)
+    left = (lambda x, weights: right @ weights - matrix @ x) if keep else partial(residual, system)
+    with one_thread.lifted(system.size):
+        return Response.of(lu, order, count, right, len(system.loadings), left)
 
 
-def residual(system: System, response: Array) -> Array:
-    """Right sides less matrix times response, (size, s + n), from rows computed anew: no second matrix is kept."""
+def residual(system: System, solution: Array, weights: Array) -> Array:
+    """B W - A x (size, w) for solutions x (size, w) and weights W (s + n, w), from rows computed anew.
+
+    No second matrix is kept for it.
+    """
     unknowns = system.unknowns.size
-    z, s = response[:unknowns], response[unknowns:]
-    result = np.zeros_like(response, order="F")
+    z, s = solution[:unknowns], solution[unknowns:]
+    result = np.zeros_like(solution, order="F")
 
     def place(block: InfluenceRows) -> None:
         for rows in system.rows(block):
-            first = 0
+            first, left = 0, weights.T @ rows.right
             for part in rows.left:
-                rows.right[:] -= z[first : first + len(part)].T @ part
+                left -= z[first : first + len(part)].T @ part
                 first += len(part)
-            result[rows.at] = rows.right.T
+            result[rows.at] = left.T
 
     system.influence.each_block(system.equations.collocation, place)
     result[:unknowns] -= system.border @ s

@@ -122,8 +122,12 @@ class MotionAlgebra:
     @property
     def projector(self) -> Array:
         """P = I - R (ℓᵀR)⁻¹ ℓᵀ (n, n)."""
-        identity = np.eye(len(self.weights))
-        return identity - self.rigid_motions @ self.amplitudes_of(identity)
+        return np.eye(len(self.weights)) - self.rigid_motions @ self.nearest
+
+    @cached_property
+    def nearest(self) -> Array:
+        """(ℓᵀR)⁻¹ ℓᵀ (k, n), which gives the amplitudes of `amplitudes_of`."""
+        return self._solved(self.equilibrium.T)
 
     def amplitudes_of(self, displacement: Array) -> Array:
         """(ℓᵀR)⁻¹ ℓᵀu (k,): the a with which R a is nearest to u (n,) in the least squares of the weights."""
@@ -181,13 +185,15 @@ def fix_gauge(motions: MotionAlgebra, compliance: Array, free_displacement: Arra
 
     With P and p0 of `MotionAlgebra`: M' = P M P and Δ1' = P (Δ1 + M p0).
     """
-    M, (n, k) = compliance, motions.rigid_motions.shape
-    project = motions.projector if n > k else np.zeros((n, n))
+    M, R, shift = compliance, motions.rigid_motions, motions.amplitudes_of(compliance)
+    n, k = R.shape
+    moved = free_displacement + M @ motions.balancing_pressure
+    reduced = M - R @ shift
     return Gauge(
-        compliance=project @ M @ project,
-        free_displacement=project @ (free_displacement + M @ motions.balancing_pressure),
+        compliance=reduced - (reduced @ R) @ motions.nearest if n > k else np.zeros((n, n)),
+        free_displacement=moved - R @ motions.amplitudes_of(moved) if n > k else np.zeros_like(moved),
         shift_load=motions.amplitudes_of(free_displacement),
-        shift_pressure=motions.amplitudes_of(M),
+        shift_pressure=shift,
     )
 
 

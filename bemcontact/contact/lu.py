@@ -4,14 +4,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Self
 
-from scipy.linalg import get_lapack_funcs
+from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
 from bemcontact.arrays import Array, IntArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LU:
-    """Factors of a square matrix.
+    """Factors of a square matrix A = P⁻¹ L U.
 
     Parameters
     ----------
@@ -40,3 +40,15 @@ class LU:
         (substitute,) = get_lapack_funcs(("getrs",), dtype=float)
         x = substitute(self.factors, self.pivots, right)[0]
         return x + substitute(self.factors, self.pivots, residual(x), overwrite_b=True)[0]
+
+    def forward(self, right: Array) -> Array:
+        """L⁻¹P times right sides (m, s)."""
+        (exchange,), (substitute,) = get_lapack_funcs(("laswp",), dtype=float), get_blas_funcs(("trsm",), dtype=float)
+        return substitute(1.0, self.factors, exchange(right, self.pivots), lower=True, diag=True, overwrite_b=True)
+
+    def backward(self, reduced: Array, last: int | None = None) -> Array:
+        """The last rows (q,) or (q, s) of U⁻¹ times reduced right sides (m,) or (m, s); all rows if None."""
+        (substitute,) = get_blas_funcs(("trsm",), dtype=float)
+        first = 0 if last is None else len(self.factors) - last
+        own = reduced[first:] if reduced.ndim == 2 else reduced[first:, None]
+        return substitute(1.0, self.factors[first:, first:], own).reshape(-1, *reduced.shape[1:])

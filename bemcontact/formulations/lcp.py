@@ -7,6 +7,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, real_array
+from bemcontact.blas_threads import one_thread
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.complementarity import find_state
@@ -38,6 +39,7 @@ class LcpResult:
     method: str
 
 
+@one_thread
 def solve_lcp(M: ArrayLike, q: ArrayLike) -> LcpResult:
     """Solve a linear complementarity problem: z >= 0, w = q + M z >= 0, z·w = 0.
 

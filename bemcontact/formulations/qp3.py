@@ -18,11 +18,19 @@ from bemcontact.contact.solution import ContactSolution, Status, Trace
 from bemcontact.errors import NotConvexError, SolverError
 from bemcontact.formulations.clarabel import STATUSES, minimize_convex
 from bemcontact.formulations.complementarity import escape_note, polish
+from bemcontact.formulations.piqp import minimize_by_piqp
 from bemcontact.formulations.scaling import ACCEPTED, ScaledContact, scale, scaled_point, scaled_weights, unscaled
-from bemcontact.options import FormulationName, SolveOptions, Weights, options_of
+from bemcontact.options import ConvexSolver, FormulationName, SolveOptions, Weights, options_of
 
 NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR, or negative eigenvalue, that is round-off; by the scaling the numbers are of size one."""
+NAMES = {ConvexSolver.CLARABEL: "Clarabel", ConvexSolver.PIQP: "PIQP"}
+MANY_POINTS = 500
+"""Number of contact points from which Clarabel takes some hundred times longer than the direct solver."""
+SLOW = (
+    "Clarabel is slow for so many contact points: the direct solver is some hundred times faster, and the solver "
+    "piqp a few times"
+)
 SLIGHT = 1e-2
 """Negative part of a Hessian, relative to its largest eigenvalue, that is attributed to the mesh."""
 
@@ -98,7 +106,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     With the consistent weights the minimum need not be the contact state, because J has negative entries. The result is
     then not polished. `smallest_eigenvalue` is that of the scaled Hessian. The history begins at Clarabel's start:
     `Objective.value`, and as "infeasibility" the residual of the constraints that Clarabel holds against its tolerance,
-    relative to their terms where those are larger than one.
+    relative to their terms where those are larger than one. PIQP has no history.
 
     Raises
     ------
@@ -107,8 +115,10 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
         hundredth of the largest.
     ProblemError
         The problem does not carry the weights asked for, or an option has no meaning for QP3.
+    OptionError
+        PIQP is not installed.
     SolverError
-        Clarabel broke down, and left no point. A point that it leaves is polished, and a note says what happened.
+        The solver broke down, and left no point. A point that is left is polished, and a note says what happened.
     """
     options = options_of(FormulationName.QP3, options)
     scaled, J = scale(contact), scaled_weights(contact, options.weights)
@@ -121,14 +131,16 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
             f"QP3 is not convex on this mesh (smallest eigenvalue {eigenvalue:.1e}): it was solved without the "
             "negative part of its Hessian, as a start for the active-set step"
         )
-    optimum = _minimized(scaled, work, options.max_iterations)
+    optimum = _minimized(scaled, work, options)
     if optimum.status is Status.INFEASIBLE and (escape := escape_note(contact)):
         notes.append(escape)
     notes += [optimum.note] if optimum.note else []
+    if contact.size >= MANY_POINTS and options.solver is ConvexSolver.CLARABEL:
+        notes.append(SLOW)
     p, u_n, a = unscaled(contact, optimum.pressure, optimum.amplitudes)
     solution = ContactSolution(
         formulation=FormulationName.QP3,
-        solver="Clarabel",
+        solver=NAMES[options.solver],
         status=optimum.status,
         pressure=p,
         displacement=u_n,
@@ -138,6 +150,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
         history=tuple(
             Trace(quantity=quantity, first=0, values=tuple(values.tolist()))
             for quantity, values in zip(("objective", "infeasibility"), optimum.progress.T, strict=True)
+            if len(values)
         ),
         notes=tuple(notes),
     )
@@ -169,7 +182,7 @@ class _Optimum:
     note: str
 
 
-def _minimized(scaled: ScaledContact, work: Objective, max_iterations: int | None) -> _Optimum:
+def _minimized(scaled: ScaledContact, work: Objective, options: SolveOptions) -> _Optimum:
     """State the quadratic program in cvxpy, and solve it."""
     import cvxpy as cp
 
@@ -183,15 +196,20 @@ def _minimized(scaled: ScaledContact, work: Objective, max_iterations: int | Non
         goal, gap, balance = goal + work.amplitudes @ a, gap + R @ a, [ell.T @ p == -load]
     program = cp.Problem(cp.Minimize(goal), [gap >= 0, *balance])
     try:
-        answer = minimize_convex(program, max_iterations, equilibrate=False, leave_point=True)
+        if options.solver is ConvexSolver.PIQP:
+            answer = minimize_by_piqp(program, options.max_iterations)
+        else:
+            answer = minimize_convex(program, options.max_iterations, equilibrate=False, leave_point=True)
     except SolverError as error:
         raise SolverError(
-            "Clarabel found no solution of QP3; check the mesh for very short elements, or solve the "
+            f"{NAMES[options.solver]} found no solution of QP3; check the mesh for very short elements, or solve the "
             "complementarity problem directly"
         ) from error
-    has_point = p.value is not None
+    has_point, status = p.value is not None, STATUSES[str(program.status)]
+    if options.solver is ConvexSolver.PIQP and not has_point:
+        status = Status.NO_SOLUTION_FOUND  # it proves nothing
     return _Optimum(
-        status=Status.NUMERICAL_FAILURE if answer.failed else STATUSES[str(program.status)],
+        status=Status.NUMERICAL_FAILURE if answer.failed else status,
         pressure=np.asarray(p.value, float) if has_point else np.zeros(n),
         amplitudes=np.asarray(a.value, float) if has_point and a is not None else np.zeros(k),
         iterations=program.solver_stats.num_iters or 0,

@@ -10,6 +10,7 @@ import cvxpy as cp
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import instance_of, real_number, shown
 from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -236,6 +237,7 @@ class ContactModel(WithHints):
         """The problem with nothing added."""
         return self.problem()
 
+    @one_thread
     def solve(
         self,
         extra_objective: cp.Expression | None = None,

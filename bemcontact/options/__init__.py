@@ -9,6 +9,7 @@ from bemcontact.options.declaration import named as named
 from bemcontact.options.solving import COMPARED as COMPARED
 from bemcontact.options.solving import USES as USES
 from bemcontact.options.solving import ComparisonKeywords as ComparisonKeywords
+from bemcontact.options.solving import ConvexSolver as ConvexSolver
 from bemcontact.options.solving import Equilibrium as Equilibrium
 from bemcontact.options.solving import FormulationName as FormulationName
 from bemcontact.options.solving import Rows as Rows

@@ -29,7 +29,7 @@ COMPARED = (FormulationName.QP1, FormulationName.QP2, FormulationName.QP3)
 USES: Mapping[FormulationName, tuple[str, ...]] = {
     FormulationName.QP1: ("weights", "rows", "start", "polish"),
     FormulationName.QP2: ("weights", "penalty", "rows", "equilibrium", "start", "polish"),
-    FormulationName.QP3: ("weights", "polish"),
+    FormulationName.QP3: ("weights", "solver", "polish"),
     FormulationName.COMPLEMENTARITY: (),
 }
 """Options that a formulation has a use for, besides those that all take."""
@@ -62,6 +62,15 @@ class Equilibrium(StrEnum):
     """ℓᵀp = -load holds exactly. The default."""
     PENALTY = "penalty"
     """Only penalized, with all the rest of (12), as in [SS92]: a body lifted off its support is a stationary point."""
+
+
+class ConvexSolver(StrEnum):
+    """Solvers of QP3."""
+
+    CLARABEL = "clarabel"
+    """Interior points with sparse factors. The default."""
+    PIQP = "piqp"
+    """Interior points with dense factors, of the extra piqp: faster where many points may touch."""
 
 
 class StartName(StrEnum):
@@ -113,6 +122,7 @@ class SolveKeywords(StatementKeywords, ComparisonKeywords, total=False):
     """Keywords of `bemcontact.solve`: types of fields of `SolveOptions`, with names as texts."""
 
     start: GivenStart | os.PathLike[str] | StartName | str | None
+    solver: ConvexSolver | str
     polish: bool
 
 
@@ -177,6 +187,11 @@ class SolveOptions:
         metavar="N",
         least=1,
         shown="that of the solver",
+    )
+    solver: ConvexSolver = declared(
+        ConvexSolver.CLARABEL,
+        "qp3: solver of the convex program; piqp is faster for many contact points, and needs the extra piqp.",
+        noun="solver",
     )
     polish: bool = declared(
         True, "qp1, qp2, qp3: make the result of the solver exact by a few steps of an active-set method."

@@ -9,6 +9,7 @@ from pydantic import computed_field
 
 from bemcontact.arrays import Array, BoolArray, freeze_arrays
 from bemcontact.assessment.footprint import Footprint, footprint
+from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import real_number, shown, whole_number
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change, LoadCases
@@ -265,6 +266,7 @@ class LoadPath(Leaf):
         return t
 
 
+@one_thread
 def load_path(start: CondensedContact, end: CondensedContact) -> LoadPath:
     """Follow the contact state from one problem to another of the same body, exactly.
 

@@ -10,6 +10,7 @@ from pydantic import computed_field
 from bemcontact.arrays import Array, IntArray, freeze_arrays, real_array
 from bemcontact.assessment.accuracy import NO_MESH, Accuracy
 from bemcontact.assessment.footprint import ContactInterval, end_rates, footprint, resting_ends
+from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
@@ -134,6 +135,7 @@ class Sensitivities(Leaf):
         return tuple(self.each.values())
 
 
+@one_thread
 def sensitivities(
     contact: CondensedContact,
     changes: Mapping[str, Change] | None = None,

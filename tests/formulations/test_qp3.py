@@ -9,8 +9,8 @@ from contact_problems import in_units, random_contact
 import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
-from bemcontact.errors import NotConvexError, ProblemError, SolverError
-from bemcontact.formulations import clarabel, complementarity, qp3
+from bemcontact.errors import NotConvexError, OptionError, ProblemError, SolverError
+from bemcontact.formulations import clarabel, complementarity, piqp, qp3
 from bemcontact.formulations.scaling import scale
 from bemcontact.options import SolveOptions, Weights
 
@@ -218,3 +218,36 @@ def test_the_point_of_a_failed_solver_is_polished_and_the_outcome_says_so(monkey
     left = qp3.solve(problem, UNPOLISHED)
     assert left.status is Status.NUMERICAL_FAILURE
     assert np.abs(left.pressure - direct.pressure).max() > 1e-9 * direct.pressure.max()
+
+
+@pytest.mark.parametrize("name", ["cylinder_on_plane", "cantilever_flat_surface", "gallery/receding_contact"])
+def test_piqp_finds_the_same_pressure(name: str):
+    """Before the active-set steps to a thousandth of the peak, after them exactly that of the direct solver."""
+    pytest.importorskip("piqp")
+    variant = "stated mesh"
+    contact = bemcontact.condense(bemcontact.load(f"models/{name}.yaml", variant=variant))
+    direct = complementarity.solve(contact).pressure
+    raw = qp3.solve(contact, SolveOptions.of("qp3", solver="piqp", polish=False))
+    polished = qp3.solve(contact, SolveOptions.of("qp3", solver="piqp"))
+    assert (raw.solver, raw.history) == ("PIQP", ())
+    assert raw.pressure == pytest.approx(direct, abs=1e-3 * direct.max())
+    assert polished.pressure == pytest.approx(direct, abs=1e-12 * direct.max())
+
+
+def test_piqp_proves_nothing():
+    """Pulled off its support: no pressure balances the load. Clarabel proves it, PIQP calls it unbounded."""
+    pytest.importorskip("piqp")
+    pulled = CondensedContact.from_compliance(np.eye(3), np.zeros(3), rigid_motions=np.ones(3), motion_load=1.0)
+    assert qp3.solve(pulled, SolveOptions.of("qp3", solver="piqp")).status is Status.NO_SOLUTION_FOUND
+
+
+def test_a_solver_that_is_not_installed_is_an_error_in_one_sentence(monkeypatch):
+    monkeypatch.setattr(piqp, "find_spec", lambda _: None)
+    with pytest.raises(OptionError, match=r"piqp is not installed; pip install 'bemcontact\[piqp\]'"):
+        qp3.solve(random_contact(1, 9, 0), SolveOptions.of("qp3", solver="piqp"))
+
+
+def test_clarabel_says_where_it_is_slow(monkeypatch):
+    monkeypatch.setattr(qp3, "MANY_POINTS", 9)
+    assert qp3.SLOW in qp3.solve(random_contact(1, 9, 0)).notes
+    assert qp3.SLOW not in qp3.solve(random_contact(1, 8, 0)).notes

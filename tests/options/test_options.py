@@ -20,7 +20,7 @@ from bemcontact.options.declaration import OF_PROBLEM
 
 MODEL = Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml"
 NAMED_IN_SIGNATURES = {"formulation", "formulations", "weights", "penalties"}
-STARTS_AND_POLISH = {"start", "seed", "starts", "polish"}
+STARTS_AND_POLISH = {"start", "seed", "starts", "solver", "polish"}
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bemcontact.arrays import Array, BoolArray, whole_array
+from bemcontact.blas_threads import one_thread
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.equilibration import Scales, equilibrate, unequilibrated
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
@@ -224,6 +225,7 @@ def reduced_inertia(descent: Descent) -> Inertia:
     return hessian.size + positive, zero, negative
 
 
+@one_thread
 def minimize_qp(
     H: Any,
     c: ArrayLike,

@@ -13,6 +13,7 @@ from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
+from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import ensure_callable, instance_of, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
@@ -35,6 +36,7 @@ SAME = 1e-12
 """Relative difference of compliances that is round-off."""
 
 
+@one_thread
 def design_gap(
     contact: CondensedContact | Sequence[CondensedContact],
     relief: Relief,

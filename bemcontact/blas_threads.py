@@ -1,0 +1,60 @@
+"""How many threads BLAS takes: one, but for factors of large matrices.
+
+Products of vectors and small matrices are what contact problems mostly need. Several threads wait for each other in
+every one of them. On idle processors that makes a solver a few times slower, and on busy ones it may be thirty times.
+"""
+
+import threading
+from collections.abc import Iterator
+from contextlib import ContextDecorator, contextmanager
+from functools import lru_cache
+
+import scipy.linalg  # noqa: F401 - loads the BLAS of SciPy
+from threadpoolctl import ThreadpoolController
+
+WORTH_THREADS = 1000
+"""Size of a matrix from which several threads factorize it faster than one, also on processors that are half busy."""
+
+
+@lru_cache(maxsize=1)
+def _libraries() -> ThreadpoolController:
+    """The BLAS libraries of NumPy and SciPy, which must be loaded to be found."""
+    return ThreadpoolController()
+
+
+class _OneThread(ContextDecorator):
+    """BLAS takes one thread until the last of those that asked for it is done, in whatever thread they are."""
+
+    def __init__(self):
+        self.lock, self.users = threading.Lock(), 0
+        self.before = None
+
+    def __enter__(self) -> None:
+        with self.lock:
+            if not self.users:
+                self.before = _libraries().limit(limits=1, user_api="blas")
+            self.users += 1
+
+    def __exit__(self, *_: object) -> None:
+        with self.lock:
+            self.users -= 1
+            if not self.users and self.before is not None:
+                self.before.restore_original_limits()
+
+    @contextmanager
+    def lifted(self, size: int) -> Iterator[None]:
+        """As many threads as before, for work on a matrix that is large enough."""
+        many = size >= WORTH_THREADS
+        with self.lock:
+            if many and self.users and self.before is not None:
+                self.before.restore_original_limits()
+        try:
+            yield
+        finally:
+            with self.lock:
+                if many and self.users:
+                    _libraries().limit(limits=1, user_api="blas")
+
+
+one_thread = _OneThread()
+"""Decorator and context in which BLAS takes one thread."""
