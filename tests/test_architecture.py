@@ -355,7 +355,7 @@ WITHOUT_MODULE = {
     "spec/test_limits.py": "the limits of a spec, through reading, document and parser",
     "spec/test_refused_inputs.py": "the page of refused inputs",
     "formulations/local_solver/test_contact_programs.py": "QP1 and QP2 by the local solver alone and by formulations",
-    "report/test_browser.py": "the pages of a study and of the reproduction in a browser",
+    "report/test_browser.py": "the pages of a mesh study and of the reproduction in a browser",
 }
 """File of tests that is named after no module -> what it tests."""
 

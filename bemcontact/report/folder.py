@@ -1,4 +1,4 @@
-"""Folders of studies, reproductions and paths; a folder is written completely or not at all."""
+"""Folders of mesh studies, reproductions and paths; a folder is written completely or not at all."""
 
 import json
 import re
@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from bemcontact.analysis.mesh_study import MeshStudy
 from bemcontact.analysis.reproduction import Reproduction
-from bemcontact.analysis.study import Study
 from bemcontact.files import output
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report import page
@@ -39,7 +39,7 @@ REPORT = Contents(
     picture=re.compile(r"(problem|pressure|gap|deformed|difference|convergence|history-[a-z0-9-]+)\.svg"),
     keys=frozenset({"settings", "levels", "convergence", "versions"}),
 )
-"""Folder of a study."""
+"""Folder of a mesh study."""
 REPRODUCTION = Contents(
     title="reproduction",
     page="page.html",
@@ -80,8 +80,8 @@ def ensure_folder_writable(folder: Path, contents: Contents = REPORT) -> None:
         )
 
 
-def save(study: Study, folder: Path, spec: str | None = None) -> None:
-    """Write a study as a folder: page, numbers, pictures, condensed problem on the finest mesh, and spec if given."""
+def save(study: MeshStudy, folder: Path, spec: str | None = None) -> None:
+    """Write a mesh study as a folder: page, numbers, pictures, condensed problem of the finest mesh, spec if given."""
     ensure_folder_writable(folder)
     pictures = {name: vector_graphic(figure) for name, figure in figures_of(study).items()}
     text = page.render(study.to_dict(), pictures, spec)

@@ -1,4 +1,4 @@
-"""Pictures of a study in a size for pages and telephones, of the iterations, and of convergence with the mesh."""
+"""Pictures of a mesh study in a size for pages and telephones, of the iterations, and of convergence with the mesh."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-from bemcontact.analysis.study import MeshLevel, Study
+from bemcontact.analysis.mesh_study import MeshLevel, MeshStudy
 from bemcontact.assessment.comparison import Contender
 from bemcontact.assessment.convergence import Convergence
 from bemcontact.bem import mesh
@@ -36,8 +36,8 @@ ROUND_OFF = 1e-12
 """Difference of pressures over the peak that is not worth a picture."""
 
 
-def figures_of(study: Study) -> dict[str, Figure]:
-    """Make all pictures of a study, by name; the finest mesh is drawn.
+def figures_of(study: MeshStudy) -> dict[str, Figure]:
+    """Make all pictures of a mesh study, by name; the finest mesh is drawn.
 
     Names are "problem" and "deformed" (if a body is known), "pressure", "gap", "difference" (if there is any),
     "history-qp1" and so on, with the weights if they are not tributary (if histories were recorded), and "convergence"

@@ -1,4 +1,4 @@
-"""Pictures of a study: iterations, convergence, and which pictures there are."""
+"""Pictures of a mesh study: iterations, convergence, and which pictures there are."""
 
 import dataclasses
 from collections.abc import Callable
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from drawings import curves, drawn
 from matplotlib.figure import Figure
-from studies import (
+from mesh_studies import (
     not_unique,
     of_many_settings,
     on_one_mesh,
@@ -17,7 +17,7 @@ from studies import (
     without_contact,
 )
 
-from bemcontact.analysis.study import Study
+from bemcontact.analysis.mesh_study import MeshStudy
 from bemcontact.assessment.comparison import Contender
 from bemcontact.contact.solution import Trace
 from bemcontact.report import figures
@@ -83,7 +83,7 @@ def test_each_study_has_its_pictures():
 @pytest.mark.parametrize(
     "study", [on_three_meshes, of_many_settings, without_contact], ids=lambda study: study.__name__
 )
-def test_pictures_are_the_same_each_time_and_light_enough(study: Callable[[], Study]):
+def test_pictures_are_the_same_each_time_and_light_enough(study: Callable[[], MeshStudy]):
     first, second = (
         {name: figures.vector_graphic(figure) for name, figure in figures.figures_of(study()).items()} for _ in range(2)
     )
