@@ -13,6 +13,7 @@ from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.parametric.path import LoadPath
 from bemcontact.parametric.sensitivity import Sensitivities
 from bemcontact.serialization import Leaf, Record, schema_of
+from bemcontact.studies.table import StudyRecord
 
 RESULTS: dict[str, type[Leaf] | type[Record]] = {
     "result": ResultRecord,
@@ -21,6 +22,7 @@ RESULTS: dict[str, type[Leaf] | type[Record]] = {
     "report": MeshStudyRecord,
     "reproduction": ReproductionRecord,
     "path": ParameterPath,
+    "study": StudyRecord,
     "load_path": LoadPath,
     "sensitivities": Sensitivities,
     "starts": RandomStarts,

@@ -20,6 +20,7 @@ from bemcontact.report.figures.result import (
     figure_of_cases,
     figure_of_result,
 )
+from bemcontact.report.figures.study import draw_output, figures_of_study
 
 __all__ = [
     "FORMATS",
@@ -34,6 +35,7 @@ __all__ = [
     "draw_gaps",
     "draw_history",
     "draw_interval_ends",
+    "draw_output",
     "draw_peaks",
     "draw_pressure",
     "draw_pressures",
@@ -50,6 +52,7 @@ __all__ = [
     "figure_of_result",
     "figures_of",
     "figures_of_reproduction",
+    "figures_of_study",
     "save",
     "vector_graphic",
 ]
