@@ -88,7 +88,7 @@ def study(
         from bemcontact.runs.study import study_of_plan
         from bemcontact.studies.axes import written_axes
         from bemcontact.studies.outputs import chosen
-        from bemcontact.studies.plan import plan_of
+        from bemcontact.studies.plan import study_plan
         from bemcontact.studies.workers import processors
 
         def located(error: ProblemError) -> str:
@@ -101,7 +101,7 @@ def study(
         with by_option("--output"):
             shown = chosen(None if output is None else [item.strip() for item in output.split(",")], problem)
         with by_option("--vary", located=located):
-            plan = plan_of(problem, axes)
+            plan = study_plan(problem, axes)
         if scheduler is not None and workers is not None:
             raise OptionError("--scheduler and --workers exclude each other: a cluster has its own workers")
         try:

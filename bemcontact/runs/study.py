@@ -16,7 +16,7 @@ from bemcontact.report.study_page import rows_in_short
 from bemcontact.studies.cluster import ensure_dask, rows_by_dask
 from bemcontact.studies.journal import JOURNAL, Journal, opened, recorded
 from bemcontact.studies.outputs import chosen
-from bemcontact.studies.plan import StudyPlan, plan_of
+from bemcontact.studies.plan import StudyPlan, study_plan
 from bemcontact.studies.rows import MemberRow, row_from
 from bemcontact.studies.table import StudyTable, sorted_rows
 from bemcontact.studies.work import tasks_of
@@ -102,7 +102,7 @@ def study(
         If the folder cannot be written, or holds other files.
     """
     ensure_callable(progress, "progress")
-    plan = plan_of(problem, vary, accuracy)
+    plan = study_plan(problem, vary, accuracy)
     shown = chosen(outputs, problem)
     count = whole_number(workers, "number of workers", 1)
     place = None if folder is None else file_path(folder, "folder")

@@ -131,7 +131,7 @@ def readable(text: str, name: str, overrides: Changes = (), variant: str | None 
         return None
 
 
-def value_of(text: str, name: str) -> Any:
+def written_value(text: str, name: str) -> Any:
     """Read one value in YAML, as an override has it behind its equals sign; `SpecError` if it is none."""
     document = _parsed(text, name)
     if document.messages:

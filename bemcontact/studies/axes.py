@@ -11,7 +11,7 @@ import numpy as np
 from bemcontact.checks.arguments import instance_of, shown, text_of_argument
 from bemcontact.errors import Issue, KeyPath, OptionError, ProblemError, SpecError
 from bemcontact.problem.key_path import parsed_path
-from bemcontact.spec import value_of
+from bemcontact.spec import written_value
 
 VARIANT, CASE = "variant", "case"
 """Keys of an axis whose values are names of variants, and of load cases or combinations."""
@@ -123,7 +123,7 @@ def written_axis(text: str) -> tuple[str, list[Any]]:
     if _PART_OF_RANGE.fullmatch(written):
         raise OptionError(f"{keys}: expected a:b:n for n values from a to b, or v1,v2,v3; found {written.strip()}")
     try:
-        return keys, [value_of(item, keys) for item in _items(written)]
+        return keys, [written_value(item, keys) for item in _items(written)]
     except SpecError as error:
         raise OptionError(str(error)) from None
 

@@ -30,7 +30,7 @@ def rows_by_dask(plan: StudyPlan, tasks: Iterable[Task], scheduler: str) -> Rows
 
     with _client(scheduler) as client:
         waiting, own = iter(tasks), dict[str, Task]()
-        finished = distributed.as_completed(raise_errors=False)
+        finished = distributed.as_completed(loop=client.loop, raise_errors=False)
 
         def hand_on() -> None:
             most = AHEAD * max(1, sum(client.nthreads().values()))

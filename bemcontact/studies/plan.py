@@ -96,7 +96,7 @@ class StudyPlan:
 
     def groups(self) -> Iterator[list[int]]:
         """Members by number, those together that may be condensed together; alone where a mesh is searched for."""
-        if not any(self.shares) or self.problem.adapts:
+        if not any(self.shares):
             yield from ([number] for number in range(len(self)))
             return
         together: dict[tuple[int, ...], list[int]] = {}
@@ -104,9 +104,16 @@ class StudyPlan:
             apart = zip(self.positions(number), self.shares, strict=True)
             together.setdefault(tuple(position for position, shared in apart if not shared), []).append(number)
         for numbers in together.values():
-            rest = iter(numbers)
-            while group := [*islice(rest, TOGETHER)]:
+            rest, most = iter(numbers), TOGETHER if self._has_its_mesh(numbers[0]) else 1
+            while group := [*islice(rest, most)]:
                 yield group
+
+    def _has_its_mesh(self, number: int) -> bool:
+        """Whether the mesh of a member is the one that it states."""
+        try:
+            return not self.member(number).adapts
+        except ProblemError:
+            return False
 
     def ensure_possible(self) -> None:
         """Refuse values that are wrong by themselves: each value of each axis, with the first value of the variants."""
@@ -124,7 +131,7 @@ def _acts(path: tuple[str | int, ...]) -> bool:
     return path[0] in ACTING or (path[0] == "contact_zones" and path[2:3] == ("surface",))
 
 
-def plan_of(problem: Problem, vary: Mapping[Any, Any], accuracy: AskedAccuracy = "stated") -> StudyPlan:
+def study_plan(problem: Problem, vary: Mapping[Any, Any], accuracy: AskedAccuracy = "stated") -> StudyPlan:
     """Plan a study; each load case is a member by itself where none of them is chosen.
 
     `ProblemError` if a key leads nowhere, or a value is wrong.
