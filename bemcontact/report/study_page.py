@@ -179,8 +179,8 @@ def _range_of(study: StudyTable, column: str) -> tuple[str, str, str, str]:
     rows = [row for row in study.rows if row.holds is not False and row.reading(column).value is not None]
     if not rows:
         return NOTHING, "", NOTHING, ""
-    by = sorted(rows, key=lambda row: row.reading(column).value or 0.0)
-    ends = by[0], by[-1]
+    values = [float(f"{row.reading(column).value:.9g}") for row in rows]  # of equal ones the first, not by round-off
+    ends = (rows[values.index(pick(values))] for pick in (min, max))
     (low, at_low), (high, at_high) = (
         (with_unit(reading_in_words(row.reading(column)), unit), f"member {row.number}") for row in ends
     )

@@ -91,6 +91,10 @@ def of_each_kind() -> dict[str, list[Any]]:
         ],
         "cases": [bemcontact.solve_cases(cases)],
         "comparison": [bemcontact.compare(contact, starts=2)],
+        "study": [
+            bemcontact.study(roller(), {"conditions.top.pressure": [20.0, -1.0]}),
+            bemcontact.study(cases, {"accuracy": [None]}, ["peak", "force"]),
+        ],
         "path": [
             bemcontact.follow(roller(), "conditions.top.pressure", 20.0, 0.0),
             bemcontact.follow(punch(), "conditions.top.pressure", 1.0),
