@@ -23,11 +23,13 @@ from bemcontact.report.study_page import unit_of_output, value_in_words
 from bemcontact.studies.rows import MemberRow
 from bemcontact.studies.table import StudyTable
 
+CURVES = tuple(color for color in CYCLE if color != VERMILION)
+"""Colors of curves; vermilion is that of members that do not hold."""
 WIDTH, HEIGHT = 5.2, 3.9
 """Inches of a picture."""
 MOST_PICTURES = 36
 """Largest number of pictures of a study."""
-MOST_CURVES = 6
+MOST_CURVES = 5
 """Largest number of curves in a picture."""
 MOST_MARKS = 300
 """Largest number of marks of members that do not hold, in a picture."""
@@ -95,7 +97,7 @@ def _curves(study: StudyTable, others: Sequence[int]) -> Iterator[tuple[str, lis
         for order, position in enumerate(chosen):
             value = axis.values[position]
             rows = [row for row in study.rows if row.values[axis.name] == value]
-            yield f"{_last(axis.name)} = {value_in_words(value)}", rows, CYCLE[order % len(CYCLE)]
+            yield f"{_last(axis.name)} = {value_in_words(value)}", rows, CURVES[order % len(CURVES)]
         return
     middle = {study.axes[i].name: study.axes[i].values[len(study.axes[i].values) // 2] for i in others}
     rows = [row for row in study.rows if all(row.values[name] == value for name, value in middle.items())]
@@ -146,7 +148,7 @@ def _draw_doubtful(axes: Axes, rows: Sequence[MemberRow], column: str, name: str
         )
     failed = sorted({place[repr(row.values[name])] for row in doubtful if row.reading(column).value is None})
     if failed:
-        axes.scatter(
-            failed, [0.02] * len(failed), s=26, marker="x", color=VERMILION, zorder=3, label="no value",
-            transform=axes.get_xaxis_transform(),
+        axes.plot(
+            failed, [0.03] * len(failed), color=VERMILION, linestyle="none", marker="x", markersize=6, zorder=3,
+            label="no value", transform=axes.get_xaxis_transform(),
         )  # fmt: skip

@@ -46,10 +46,15 @@ def test_a_curve_has_the_values_and_their_errors():
 def test_members_that_do_not_hold_interrupt_the_curve_and_are_marked():
     axes = drawn(table(4, bad={1: MemberStatus.NOT_MET, 2: MemberStatus.FAILED}))
     assert np.isnan(axes.lines[0].get_ydata()).tolist() == [False, True, True, False]
-    marks = {
-        item.get_label(): item.get_offsets().tolist() for item in axes.collections if isinstance(item, PathCollection)
-    }
-    assert marks == {"does not hold": [[1.0, 1.0]], "no value": [[2.0, 0.02]]}
+    (dots,) = (item for item in axes.collections if isinstance(item, PathCollection))
+    assert (dots.get_label(), dots.get_offsets().tolist()) == ("does not hold", [[1.0, 1.0]])
+    (cross,) = (line for line in axes.lines if line.get_label() == "no value")
+    assert cross.get_xdata() == [2.0]
+
+
+def test_a_member_without_a_value_is_seen_at_the_end_of_the_axis():
+    axes = drawn(table(4, bad={0: MemberStatus.FAILED}))
+    assert axes.get_xlim()[0] <= 0.0
 
 
 def test_a_second_axis_gives_curves_and_a_third_one_a_band():
