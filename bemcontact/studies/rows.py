@@ -40,7 +40,7 @@ class MemberRow(Leaf):
     mesh_error: float | None
     """Largest error bar, relative; null if it is not known."""
     message: str
-    """Why the member does not hold, in sentences; empty if it does."""
+    """Why the member does not hold, or has no peak, in sentences; empty if neither is so."""
     outputs: dict[str, Reading]
     """Outputs by name; none if the member failed."""
 
@@ -73,7 +73,7 @@ def row_of(number: int, values: Mapping[str, Any], result: Result) -> MemberRow:
         certified=result.certified,
         met=accuracy.met,
         mesh_error=float(accuracy.worst) if known else None,
-        message=_message(status, result),
+        message="; ".join(filter(None, (_message(status, result), _without_peak(result)))),
         outputs=readings(result),
     )
 
@@ -92,6 +92,13 @@ def _message(status: MemberStatus, result: Result) -> str:
     if accuracy.met is None:
         error = "errors were not estimated"
     return "; ".join(filter(None, (error, asked, accuracy.reason)))
+
+
+def _without_peak(result: Result) -> str:
+    """Why there is no peak pressure; empty if there is one."""
+    if result.accuracy.infinite:
+        return f"the peak pressure is infinite in {', '.join(result.accuracy.infinite)}"
+    return "" if result.footprint.intervals else "the body touches no surface"
 
 
 def failed_row(number: int, values: Mapping[str, Any], message: str) -> MemberRow:

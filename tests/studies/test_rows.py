@@ -24,6 +24,13 @@ def test_a_result_that_is_not_certified_says_so():
     assert row.message == " ".join(result.words.split())
 
 
+def test_a_row_says_why_it_has_no_peak():
+    """Below a flat punch the pressure is infinite at both edges; it is proved all the same."""
+    row = row_of(0, {}, bemcontact.solve(bemcontact.load(MODELS / "gallery" / "flat_punch.yaml")))
+    assert (row.holds, row.outputs["peak"].value) == (True, None)
+    assert row.message == "the peak pressure is infinite in punch"
+
+
 def test_a_mesh_that_is_not_assessed_neither_holds_nor_fails():
     row = row_of(0, {}, bemcontact.solve(CYLINDER))
     assert (row.status, row.holds, row.met, row.mesh_error) == (MemberStatus.NOT_ASSESSED, None, None, None)
