@@ -20,7 +20,7 @@ from bemcontact.studies.plan import StudyPlan, study_plan
 from bemcontact.studies.rows import MemberRow, row_from
 from bemcontact.studies.table import StudyTable, sorted_rows
 from bemcontact.studies.work import tasks_of
-from bemcontact.studies.workers import Rows, rows_by_processes, rows_here
+from bemcontact.studies.workers import Rows, broken_pipes_are_errors, rows_by_processes, rows_here
 
 STAGE = "studying"
 """Name of the stage in progress."""
@@ -149,7 +149,7 @@ def _computed(
 ) -> tuple[MemberRow, ...]:
     """Rows of all members: those in the journal of the folder, and the others as they are solved."""
     keys = plan.keys()
-    with _journal(folder) as journal:
+    with broken_pipes_are_errors(), _journal(folder) as journal:
         kept = {} if folder is None else recorded(folder / JOURNAL)
         rows = {i: row_from(kept[key], i, plan.values(i)) for i, key in enumerate(keys) if key in kept}
         pace = _Pace(total=len(plan), before=len(rows), progress=progress)

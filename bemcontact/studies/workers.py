@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from multiprocessing.connection import Connection
 
 from bemcontact.studies.plan import StudyPlan
@@ -26,6 +27,22 @@ def processors() -> int:
     """Number of processors that this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)
     return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
+@contextmanager
+def broken_pipes_are_errors() -> Iterator[None]:
+    """Let a pipe or socket whose reader has ended raise an error, where it would end this process by SIGPIPE.
+
+    The command line ends by SIGPIPE as other programs do. A worker that was killed must not end it.
+    """
+    if not hasattr(signal, "SIGPIPE") or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGPIPE, before)
 
 
 def rows_here(plan: StudyPlan, tasks: Iterable[Task]) -> Rows:

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -96,6 +97,18 @@ def test_progress_says_how_far_it_has_come_and_how_long_it_takes(tmp_path: Path)
     assert said[6][1].startswith("6 of 6 members, ")
     assert said[6][1].endswith("about 0 s left")
     assert said[7] == ("report", "")
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="Windows has no such signal")
+def test_a_worker_that_ends_does_not_end_the_program_by_its_pipe():
+    """The command line ends by SIGPIPE where its reader does; while workers are at work it must not."""
+    at_work, before = list[object](), signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    try:
+        bemcontact.study(CYLINDER, VARIED, progress=lambda *_: at_work.append(signal.getsignal(signal.SIGPIPE)))
+        assert {*at_work} == {signal.SIG_IGN}
+        assert signal.getsignal(signal.SIGPIPE) is signal.SIG_DFL
+    finally:
+        signal.signal(signal.SIGPIPE, before)
 
 
 def test_a_foreign_folder_is_left_alone_before_any_work(tmp_path: Path, solved: list[int]):
