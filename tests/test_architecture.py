@@ -37,11 +37,13 @@ ROOMS = {
         *FOUNDATION, "problem", "spec", "contact", "bem", "formulations", "assessment", "adaptivity", "parametric",
         "modelling", "reference",
     ),
+    "studies": (*FOUNDATION, "problem", "spec", "contact", "bem", "assessment", "adaptivity", "analysis"),
     "report": (
         *FOUNDATION, "problem", "contact", "assessment", "adaptivity", "parametric", "modelling", "reference",
-        "analysis",
+        "analysis", "studies",
     ),
-    "cli": (*FOUNDATION, "problem", "spec", "analysis", "report"),
+    "runs": (*FOUNDATION, "problem", "analysis", "studies", "report"),
+    "cli": (*FOUNDATION, "problem", "spec", "analysis", "studies", "report", "runs"),
     "__main__": ("cli",),
 }  # fmt: skip
 """Room -> the rooms that it may import, besides itself. A room stands below all that may import it."""
@@ -66,11 +68,18 @@ HOME = {
     "numba": ("bemcontact.bem.compiled",),
     "meshio": ("bemcontact.report.vtk",),
     "jinja2": ("bemcontact.report.page",),
-    "rich": ("bemcontact.cli.terminal", "bemcontact.report.text", "bemcontact.report.reproduction"),
+    "rich": (
+        "bemcontact.cli.terminal",
+        "bemcontact.report.text",
+        "bemcontact.report.reproduction",
+        "bemcontact.report.study_page",
+    ),
+    "distributed": ("bemcontact.studies.cluster",),
+    "pyarrow": ("bemcontact.studies.table",),
 }
 """Foreign package -> the only rooms that import it."""
 
-SLOW = {"cvxpy", "clarabel", "matplotlib", "numba", "meshio"}
+SLOW = {"cvxpy", "clarabel", "matplotlib", "numba", "meshio", "distributed", "pyarrow"}
 """Foreign packages that may be imported where they are used: slow ones, solvers, and those of the optional extras."""
 
 PRINTERS = ("bemcontact.cli",)
@@ -239,7 +248,8 @@ def test_no_ring_of_imports():
 
 ONE_MEANING = {
     **dict.fromkeys(
-        ("check", "compare", "condense", "reproduce", "solve", "schema"), "a command is named after what it calls"
+        ("check", "compare", "condense", "reproduce", "solve", "study", "schema"),
+        "a command is named after what it calls",
     ),
     "program_of": "each local formulation states its program",
     "render": "a page, as HTML",
@@ -361,7 +371,7 @@ WITHOUT_MODULE = {
     "spec/test_limits.py": "the limits of a spec, through reading, document and parser",
     "spec/test_refused_inputs.py": "the page of refused inputs",
     "formulations/local_solver/test_contact_programs.py": "QP1 and QP2 by the local solver alone and by formulations",
-    "report/test_browser.py": "the pages of a study and of the reproduction in a browser",
+    "report/test_browser.py": "the pages of a mesh study and of the reproduction in a browser",
 }
 """File of tests that is named after no module -> what it tests."""
 

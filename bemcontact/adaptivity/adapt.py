@@ -12,8 +12,7 @@ from bemcontact.adaptivity.hidden_changes import told_apart
 from bemcontact.adaptivity.mesh_search import MeshSearch, cut, mesh_search
 from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
-from bemcontact.bem.body import body_of
-from bemcontact.bem.condense import Condensation, condense
+from bemcontact.bem.condense import Condensation, Condenser, condensed
 from bemcontact.errors import Issue, ProblemError, SingularSystemError, SolverError
 from bemcontact.problem.problem import ACCURACY, Problem
 
@@ -60,13 +59,15 @@ def meshed(
     errors: bool = True,
     singular: Sequence[Sequence[Singularity]] = (),
     halved: bool = False,
+    condenser: Condenser = condensed,
 ) -> Meshed:
     """Condense a problem on the mesh that it states, or on one that is found for the accuracy asked.
 
     A found mesh is cut as `problem.mesh.refine` says. The errors of a stated mesh and of a cut one are estimated,
     unless no accuracy is asked for or `errors` is false: from its elements halved, or if those of a stated mesh are
     `halved` ones, as on a mesh that was found, from these. `singular` are infinite pressures under each load case that
-    the search for another mesh of the problem recognized.
+    the search for another mesh of the problem recognized. `condenser` condenses the problem on a mesh that is stated,
+    and on that mesh with its elements cut in two; a search for a mesh does not use it.
 
     Raises
     ------
@@ -77,7 +78,7 @@ def meshed(
     """
     progress = progress or (lambda _: None)
     if not problem.adapts:
-        return _stated(problem, progress, errors, singular, halved)
+        return _stated(problem, progress, errors, singular, halved, condenser)
     found = _found(cut(problem, 1), progress)
     if problem.mesh.refine == 1:
         return found
@@ -88,23 +89,23 @@ def meshed(
 
 def _stated(
     problem: Problem, progress: Callable[[str], object], errors: bool, singular: Sequence[Sequence[Singularity]],
-    halved: bool,
+    halved: bool, condenser: Condenser = condensed,
 ) -> Meshed:  # fmt: skip
     """Condense a problem on its mesh, and estimate the errors from a mesh with elements twice or half as long."""
     asked, refine = problem.asked_accuracy, problem.mesh.refine
     if asked is None or not errors:
-        return _unsolved(problem, asked, NONE_ASKED if asked is None else NOT_ESTIMATED)
+        return _unsolved(problem, asked, NONE_ASKED if asked is None else NOT_ESTIMATED, condenser)
     progress("mesh as stated")
     try:
-        own = solved(problem)
+        own = solved(problem, condenser)
     except SolverError as error:
-        return _unsolved(problem, asked, str(error))
+        return _unsolved(problem, asked, str(error), condenser)
     try:
         unknowns = 2 * own.degrees_of_freedom
         if not halved and unknowns > MOST_UNKNOWNS:
             raise ProblemError(f"a mesh of half the elements' size has {unknowns} unknowns, more than {MOST_UNKNOWNS}")
         progress("every two elements in one" if halved else "every element in two")
-        other = solved(cut(problem, refine // 2 if halved else 2 * refine))
+        other = solved(cut(problem, refine // 2 if halved else 2 * refine), condenser)
         coarse, fine = (other, own) if halved else (own, other)
         differences = _differences(coarse, fine, asked)
         singular = singular or tuple(map(recognized, differences))
@@ -229,8 +230,8 @@ def _lost_digits(answer: Solved) -> str | None:
     return None
 
 
-def _unsolved(problem: Problem, asked: float | None, reason: str) -> Meshed:
+def _unsolved(problem: Problem, asked: float | None, reason: str, condenser: Condenser = condensed) -> Meshed:
     """A problem on a mesh whose errors were not estimated, for a reason."""
     count = 1 if problem.case is not None else max(1, len(problem.case_names))
     accuracies = (Accuracy(asked=asked, reason=reason),) * count
-    return Meshed(problem=problem, condensation=condense(body_of(problem)), accuracies=accuracies)
+    return Meshed(problem=problem, condensation=condenser(problem), accuracies=accuracies)

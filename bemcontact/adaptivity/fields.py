@@ -10,9 +10,8 @@ from bemcontact.adaptivity.zone_runs import SAME, Stretch, ZoneRun, contact_stre
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import footprint
 from bemcontact.bem import reference_element
-from bemcontact.bem.body import Body, body_of
-from bemcontact.bem.condense import Condensation, boundary_change, boundary_state
-from bemcontact.bem.condense import condense as condense_body
+from bemcontact.bem.body import Body
+from bemcontact.bem.condense import Condensation, Condenser, boundary_change, boundary_state, condensed
 from bemcontact.bem.mesh import BoundaryState, Mesh
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.surface_gaps import surface_gaps
@@ -150,11 +149,10 @@ class Solved:
         return np.hypot(tangents[..., 0], tangents[..., 1]) * weights
 
 
-def solved(problem: Problem) -> Solved:
+def solved(problem: Problem, condenser: Condenser = condensed) -> Solved:
     """Solve a problem on its mesh, under the case that acts or each one; `SolverError` without a contact state."""
-    body = body_of(problem)
-    condensation = condense_body(body)
-    runs = tuple(zone_runs(body))
+    condensation = condenser(problem)
+    runs = tuple(zone_runs(condensation.body))
     names = (None,) if problem.case is not None or not problem.load_cases else problem.case_names
     answers = tuple(_answer(condensation.acting(name), runs) for name in names)
     return Solved(condensation=condensation, runs=runs, answers=answers)

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Unpack
 
+from bemcontact.analysis.mesh_study import MeshLevel, MeshStudy, Settings
 from bemcontact.analysis.solve import Prepared, Progress, Stopwatch, assessed, ensure_acting, prepare
-from bemcontact.analysis.study import MeshLevel, Settings, Study
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Attempt
 from bemcontact.blas_threads import one_thread
@@ -76,13 +76,13 @@ def compare(
     return _compared(read, prepare(problem, watch, errors=False), watch).comparison
 
 
-def study(
+def mesh_study(
     options: ComparisonOptions,
     problem: Problem | CondensedContact,
     refine: Sequence[int] = (1,),
     progress: Progress | None = None,
     changes: Sequence[str] = (),
-) -> Study:
+) -> MeshStudy:
     """Compare formulations, as `compare` does, on one mesh for each number of parts in `refine`.
 
     A mesh that is found for an accuracy is found once and then refined. Errors are estimated on the finest mesh.
@@ -121,7 +121,7 @@ def study(
         seed=options.seed or 0,
         changes=tuple(changes),
     )
-    return Study(settings=settings, levels=tuple(levels))
+    return MeshStudy(settings=settings, levels=tuple(levels))
 
 
 def outdated(problem: Problem | CondensedContact, changes: Sequence[str]) -> frozenset[str]:

@@ -8,8 +8,8 @@ import numpy as np
 
 from bemcontact import spec
 from bemcontact.analysis import compare as comparing
+from bemcontact.analysis.mesh_study import LevelRecord, MeshLevel, MeshStudy, versions
 from bemcontact.analysis.solve import Progress
-from bemcontact.analysis.study import LevelRecord, MeshLevel, Study, versions
 from bemcontact.arrays import Array
 from bemcontact.blas_threads import one_thread
 from bemcontact.contact.record import UnitsRecord
@@ -125,14 +125,14 @@ class Run:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PaperStudy:
-    """A problem of the paper: a study of the problem as stated, and one of each variant."""
+    """A problem of the paper: a mesh study of the problem as stated, and one of each variant."""
 
     paper: PaperProblem
     """The paper's statements."""
-    study: Study
+    study: MeshStudy
     """The problem as its file states it, on all meshes."""
-    variants: Mapping[str, Study]
-    """Studies of the variants by name; references are for the problem as stated and do not judge them."""
+    variants: Mapping[str, MeshStudy]
+    """Mesh studies of the variants by name; references are for the problem as stated and do not judge them."""
 
     @property
     def problem(self) -> Problem:
@@ -255,22 +255,24 @@ def reproduce(
 ) -> Reproduction:
     """Solve the problems of the paper, with each element cut into `refine` parts, and their variants.
 
-    Variants are not refined. `OptionError` as of `bemcontact.analysis.compare.study`.
+    Variants are not refined. `OptionError` as of `bemcontact.analysis.compare.mesh_study`.
     """
     plan = ComparisonOptions()
     studies = []
     for order, paper in enumerate(problems, 1):
         name = f"problem {order} of {len(problems)}, {paper.model.replace('_', ' ')}"
-        studies.append(_paper_study(plan, paper, refine, _below(progress, name)))
+        studies.append(_paper_mesh_study(plan, paper, refine, _below(progress, name)))
     return Reproduction(problems=tuple(studies))
 
 
-def _paper_study(plan: ComparisonOptions, paper: PaperProblem, refine: Sequence[int], progress: Progress) -> PaperStudy:
+def _paper_mesh_study(
+    plan: ComparisonOptions, paper: PaperProblem, refine: Sequence[int], progress: Progress
+) -> PaperStudy:
     """Solve one problem, as stated on all meshes and with its variants."""
     return PaperStudy(
         paper=paper,
-        study=comparing.study(plan, _problem(paper, None), refine, progress),
-        variants={name: comparing.study(plan, _problem(paper, name), (1,), progress) for name in paper.variants},
+        study=comparing.mesh_study(plan, _problem(paper, None), refine, progress),
+        variants={name: comparing.mesh_study(plan, _problem(paper, name), (1,), progress) for name in paper.variants},
     )
 
 

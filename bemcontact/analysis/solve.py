@@ -15,7 +15,7 @@ from bemcontact.assessment.accuracy import NO_MESH, Accuracy
 from bemcontact.assessment.certificate import CertificateKind, certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
-from bemcontact.bem.condense import Condensation, boundary_state
+from bemcontact.bem.condense import Condensation, Condenser, boundary_state, condensed
 from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import ensure_callable, shown
@@ -171,14 +171,15 @@ def solve_with(
     problem: Problem | CondensedContact,
     progress: Callable[[int], object] | None = None,
     on_mesh: Progress | None = None,
+    condenser: Condenser = condensed,
 ) -> Result:
     """Solve a contact problem with options, and assess the result, as `solve` does.
 
-    `on_mesh` is called with each stage and how far it has come.
+    `on_mesh` is called with each stage and how far it has come. `condenser` condenses the problem on a stated mesh.
     """
     options, watch = with_start_read(options), Stopwatch(progress=on_mesh)
     ensure_acting(problem)
-    prepared = prepare(problem, watch)
+    prepared = prepare(problem, watch, condenser=condenser)
     with watch.stage("solution"):
         solution, searches = solve_contact(prepared.contact, options, progress)
     return assessed(prepared, solution, options.weights, watch, searches)
@@ -203,12 +204,13 @@ def prepare(
     *,
     errors: bool = True,
     singular: Sequence[Sequence[Singularity]] = (),
+    condenser: Condenser = condensed,
 ) -> Prepared:
     """Condense a problem on its mesh or on one that is found, and estimate the errors of a stated mesh if wanted."""
     ensure_kind(problem)
     if isinstance(problem, CondensedContact):
         return Prepared(contact=problem)
-    on_mesh = mesh_of(problem, watch, errors=errors, singular=singular)
+    on_mesh = mesh_of(problem, watch, errors=errors, singular=singular, condenser=condenser)
     return Prepared(
         contact=on_mesh.condensation.contact,
         condensation=on_mesh.condensation,
@@ -218,11 +220,16 @@ def prepare(
 
 
 def mesh_of(
-    problem: Problem, watch: Stopwatch, *, errors: bool = True, singular: Sequence[Sequence[Singularity]] = ()
+    problem: Problem,
+    watch: Stopwatch,
+    *,
+    errors: bool = True,
+    singular: Sequence[Sequence[Singularity]] = (),
+    condenser: Condenser = condensed,
 ) -> Meshed:
     """Condense a problem on its mesh or on one that is found, with the accuracy under each load case."""
     with watch.stage("mesh") as say:
-        return meshed(problem.without_joints(), say, errors=errors, singular=singular)
+        return meshed(problem.without_joints(), say, errors=errors, singular=singular, condenser=condenser)
 
 
 def assessed(

@@ -4,12 +4,13 @@ The method also covers bodies that are held by contact. Their free rigid motions
 equilibrium is exact: ℓ = J R, and the load is the work of the applied loads in the free motions.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.bem.body import Body, ensure_held
+from bemcontact.bem.body import Body, body_of, ensure_held
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.response import Response
 from bemcontact.bem.rigid_motions import all_rigid_motions
@@ -17,6 +18,7 @@ from bemcontact.bem.system import System, solve_system
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import Gauge, MotionAlgebra, fix_gauge
 from bemcontact.contact.load_cases import LoadCases, Tools
+from bemcontact.problem.problem import Problem
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -55,13 +57,68 @@ class Condensation:
         return np.append(1.0, self.contact.cases.factors)
 
 
+Condenser = Callable[[Problem], Condensation]
+"""Condenses a problem on the mesh that it states."""
+
+
+def condensed(problem: Problem) -> Condensation:
+    """Condense a problem on the mesh that it states; errors as of `body_of` and `condense`."""
+    return condense(body_of(problem))
+
+
 def condense(body: Body) -> Condensation:
     """Eliminate everything but the contact points; `SingularSystemError` if the equations have no unique solution."""
+    return condense_together([body])[0]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CondensedTogether:
+    """Bodies that differ in gaps, loads and tools only, condensed by one factorization of their common matrix.
+
+    Parameters
+    ----------
+    bodies : with equal `matrix_of`
+    system : with the loadings of all of them
+    response : solutions for each of these loadings and for unit pressures, dimensionless
+    """
+
+    bodies: Sequence[Body]
+    system: System
+    response: Response
+
+    def __getitem__(self, number: int) -> Condensation:
+        """Return one of the condensed bodies."""
+        body = self.bodies[number]
+        if len(self.bodies) == 1:
+            return _condensation(body, self.system, self.response)
+        start, loads = sum(len(other.loadings) for other in self.bodies[:number]), len(self.system.loadings)
+        own = [*range(start, start + len(body.loadings)), *range(loads, self.response.columns)]
+        system = replace(self.system, mesh=body.mesh, points=body.points, motions=body.motions, loadings=body.loadings)
+        return _condensation(body, system, self.response.of_columns(own))
+
+
+def condense_together(bodies: Sequence[Body]) -> CondensedTogether:
+    """Condense bodies whose `matrix_of` is equal; `SingularSystemError` if the equations have no unique solution."""
+    first = bodies[0]
     system = System(
-        mesh=body.mesh, material=body.problem.material, points=body.points, motions=body.motions,
-        loadings=body.loadings,
+        mesh=first.mesh, material=first.problem.material, points=first.points, motions=first.motions,
+        loadings=[loading for body in bodies for loading in body.loadings],
     )  # fmt: skip
-    response = solve_system(system)
+    return CondensedTogether(bodies=bodies, system=system, response=solve_system(system))
+
+
+def matrix_of(body: Body) -> tuple[object, ...]:
+    """What the matrix of a body and its unit pressures depend on; equal for bodies that can be condensed together."""
+    values, points = body.loadings[0].values, body.points
+    arrays = (
+        body.mesh.nodes, body.mesh.elements, body.mesh.edge, values.displacement_given, values.traction_unknown,
+        points.node, points.normals, points.element, points.local, points.point,
+    )  # fmt: skip
+    return (body.problem.material.model_dump_json(), *((array.shape, array.tobytes()) for array in arrays))
+
+
+def _condensation(body: Body, system: System, response: Response) -> Condensation:
+    """The condensed body, from the response to its loadings and unit pressures."""
     points, tools, s = body.points, body.tools, len(body.loadings)
     observed = _observe(system, response)
     prescribed = [np.sum(points.normals * item.values.displacement[points.node], axis=1) for item in body.loadings]

@@ -36,6 +36,12 @@ SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which the elements that are far from a block of points share a rule."""
 
 
+def threads() -> int:
+    """Number of threads: that of processors, or fewer if the environment says so by OMP_NUM_THREADS."""
+    stated = os.environ.get("OMP_NUM_THREADS", "").strip()
+    return min(os.cpu_count() or 1, max(1, int(stated))) if stated.isdecimal() else os.cpu_count() or 1
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Collocation:
     """Points z at which the displacement equation is written, and their places on elements.
@@ -165,7 +171,7 @@ class Influence:
         return [(rule, rule.derivatives.T @ from_middle.T) for rule in rules]
 
     def each_block(self, collocation: Collocation, use: Callable[[InfluenceRows], None]) -> None:
-        """Compute rows of F and G for all points and pass them to `use`, block by block, on all processors.
+        """Compute rows of F and G for all points and pass them to `use`, block by block, on `threads` processors.
 
         `use` is called from other threads and in any order; it must not keep the block. BLAS uses one thread meanwhile,
         because several threads are slower for products as small as these.
@@ -175,7 +181,7 @@ class Influence:
         if len(blocks) == 1:
             use(self.block(collocation, blocks[0]))
             return
-        workers = min(len(blocks), os.cpu_count() or 1)
+        workers = min(len(blocks), threads())
 
         def work(some: list[slice]) -> None:
             space = self._space(step)

@@ -7,8 +7,8 @@ Iterative refinement is made of each load, and of one combination of unit pressu
 than round-off are all pressures refined.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -70,6 +70,10 @@ class Response:
     def columns(self) -> int:
         """Number c of loads and unit pressures."""
         return self.reduced.shape[1]
+
+    def of_columns(self, some: Sequence[int]) -> Self:
+        """The solutions for some of the loads and unit pressures."""
+        return replace(self, reduced=self.reduced[:, some], last=self.last[:, some])
 
     def rows(self, at: IntArray) -> Array:
         """Rows (r, c) of X, which are among those that were solved."""

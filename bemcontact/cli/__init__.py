@@ -12,7 +12,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli import check, compare, path, reproduce, solve
+from bemcontact.cli import check, compare, path, reproduce, solve, study
 from bemcontact.cli.command import flattened, help_of, refuse, reported
 from bemcontact.cli.terminal import standard_output
 from bemcontact.errors import LINE_BREAKS, escaped, hidden_character
@@ -86,6 +86,7 @@ for function in (
     solve.solve,
     compare.compare,
     path.path,
+    study.study,
     reproduce.reproduce,
     check.condense,
     check.schema,

@@ -86,6 +86,7 @@ def schema(
         bool, typer.Option("--cases", help="The schema of the JSON that solve writes of all load cases.")
     ] = False,
     path: Annotated[bool, typer.Option("--path", help="The schema of the JSON that path writes.")] = False,
+    study: Annotated[bool, typer.Option("--study", help="The schema of study.json, which study writes.")] = False,
     report: Annotated[bool, typer.Option("--report", help="The schema of report.json, which compare writes.")] = False,
     reproduction: Annotated[
         bool, typer.Option("--reproduction", help="The schema of numbers.json, which reproduce writes.")
@@ -101,7 +102,14 @@ def schema(
       bemcontact schema --report > report.schema.json
     """
     with reported():
-        options = {"result": result, "cases": cases, "path": path, "report": report, "reproduction": reproduction}
+        options = {
+            "result": result,
+            "cases": cases,
+            "path": path,
+            "study": study,
+            "report": report,
+            "reproduction": reproduction,
+        }
         kinds = [kind for kind, wanted in options.items() if wanted]
         if len(kinds) > 1:
             refuse(f"{' and '.join(f'--{kind}' for kind in kinds)} are different schemas; choose one")

@@ -204,10 +204,10 @@ def reported(source: Source | None = None, before: Mapping[Path, int | None] | N
     """
     try:
         yield
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
         written = [str(path) for path, identity in (before or {}).items() if _identity(path) != identity]
         so_far = f"; {', '.join(written) or 'no file'} {'were' if len(written) > 1 else 'was'} written"
-        tell("interrupted", "" if before is None else so_far)
+        tell("interrupted", str(interrupt) or ("" if before is None else so_far))
         raise typer.Exit(INTERRUPTED) from None
     except (SpecError, OptionError, NotConvexError) as error:
         refuse(str(error))

@@ -50,7 +50,7 @@ def compare(
     def work(report: Report) -> CommandOutput:
         from bemcontact.analysis import compare as comparing
         from bemcontact.report import text
-        from bemcontact.report.verdicts import study_shortfall
+        from bemcontact.report.verdicts import mesh_study_shortfall
 
         parts = several(refine, "--refine", "whole number", int)
         penalties = None if penalty is None else several(penalty, "--penalty", "number", float)
@@ -59,17 +59,17 @@ def compare(
             with by_option(f"--{'penalty' if name == 'penalties' else name}"):
                 ComparisonOptions.of(**{name: value})
         options = ComparisonOptions.of(names(formulations), names(weights), penalties, starts=starts, seed=seed)
-        study = comparing.study(options, source.problem(), parts, report, source.changes)
+        study = comparing.mesh_study(options, source.problem(), parts, report, source.changes)
         if out:
             report("report", "")
             from bemcontact.report import folder
 
             folder.save(study, out, source.as_run())
         return CommandOutput(
-            summary=lambda: text.study_summary(study),
+            summary=lambda: text.mesh_study_summary(study),
             json=study.to_json,
             holds=study.holds is not False,
-            verdict=study_shortfall(study),
+            verdict=mesh_study_shortfall(study),
         )
 
     run("reading", work, source=source, folder=out, json_file=json_file)

@@ -1,19 +1,28 @@
-"""Folders of studies, reproductions and paths; a folder is written completely or not at all."""
+"""Folders of mesh studies, reproductions and paths; a folder is written completely or not at all."""
 
 import json
 import re
+import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from bemcontact.analysis.mesh_study import MeshStudy
 from bemcontact.analysis.reproduction import Reproduction
-from bemcontact.analysis.study import Study
 from bemcontact.files import output
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.report import page
+from bemcontact.report import page, study_page
 from bemcontact.report import reproduction as paper_page
-from bemcontact.report.figures import figure_of_path, figures_of, figures_of_reproduction, vector_graphic
+from bemcontact.report.figures import (
+    figure_of_path,
+    figures_of,
+    figures_of_reproduction,
+    figures_of_study,
+    vector_graphic,
+)
+from bemcontact.studies.journal import JOURNAL, is_journal
+from bemcontact.studies.table import StudyTable
 
 PICTURES = "figures"
 """Name of the folder of pictures."""
@@ -29,6 +38,8 @@ class Contents:
     others: tuple[str, ...] = ()
     picture: re.Pattern[str]
     keys: frozenset[str]
+    journal: str = ""
+    """Name of a journal, which is there before the numbers."""
 
 
 REPORT = Contents(
@@ -39,7 +50,7 @@ REPORT = Contents(
     picture=re.compile(r"(problem|pressure|gap|deformed|difference|convergence|history-[a-z0-9-]+)\.svg"),
     keys=frozenset({"settings", "levels", "convergence", "versions"}),
 )
-"""Folder of a study."""
+"""Folder of a mesh study."""
 REPRODUCTION = Contents(
     title="reproduction",
     page="page.html",
@@ -57,7 +68,17 @@ PATH = Contents(
     keys=frozenset({"key", "start", "end", "states"}),
 )
 """Folder of a load path; its page is a picture."""
-KINDS = {kind.title: kind for kind in (REPORT, REPRODUCTION, PATH)}
+STUDY = Contents(
+    title="study",
+    page="study.html",
+    numbers="study.json",
+    others=("study.csv", "study.parquet", "spec.yaml", JOURNAL),
+    picture=re.compile(r"\d+\.svg"),
+    keys=frozenset({"axes", "columns", "rows"}),
+    journal=JOURNAL,
+)
+"""Folder of a study of parameters."""
+KINDS = {kind.title: kind for kind in (REPORT, REPRODUCTION, PATH, STUDY)}
 """Title -> kind of folder."""
 
 
@@ -73,15 +94,16 @@ def ensure_folder_writable(folder: Path, contents: Contents = REPORT) -> None:
         raise FileExistsError(
             f"{folder} holds {foreign[0]}, which is not part of a {contents.title}; name a new or an empty folder"
         )
-    if present and not _is_ours(folder / contents.numbers, contents):
+    begun = bool(contents.journal) and is_journal(folder / contents.journal)
+    if present and not begun and not _is_ours(folder / contents.numbers, contents):
         raise FileExistsError(
             f"{folder} is not empty and has no {contents.numbers} of bemcontact; name a new folder, or one with an "
             f"earlier {contents.title}"
         )
 
 
-def save(study: Study, folder: Path, spec: str | None = None) -> None:
-    """Write a study as a folder: page, numbers, pictures, condensed problem on the finest mesh, and spec if given."""
+def save(study: MeshStudy, folder: Path, spec: str | None = None) -> None:
+    """Write a mesh study as a folder: page, numbers, pictures, condensed problem of the finest mesh, spec if given."""
     ensure_folder_writable(folder)
     pictures = {name: vector_graphic(figure) for name, figure in figures_of(study).items()}
     text = page.render(study.to_dict(), pictures, spec)
@@ -106,6 +128,21 @@ def save_path(path: ParameterPath, folder: Path) -> None:
     picture = vector_graphic(figure_of_path(path)).decode()
     with _written(folder, PATH, picture, path.to_json(), {}) as temporary:
         (temporary / "path.csv").write_text(path.to_csv(), encoding="utf-8", newline="\n")
+
+
+def save_study(study: StudyTable, folder: Path, spec: str | None = None) -> None:
+    """Write a study of parameters as a folder: page, tables, pictures, the journal that is there, and spec if given."""
+    ensure_folder_writable(folder, STUDY)
+    pictures = {caption: vector_graphic(figure) for caption, figure in figures_of_study(study).items()}
+    text = study_page.render(study, pictures, spec)
+    numbered = {f"{number:02d}": picture for number, picture in enumerate(pictures.values(), 1)}
+    with _written(folder, STUDY, text, study.to_json(), numbered) as temporary:
+        (temporary / "study.csv").write_text(study.to_csv(), encoding="utf-8", newline="\n")
+        study.save_parquet(temporary / "study.parquet")
+        if spec is not None:
+            (temporary / "spec.yaml").write_text(spec, encoding="utf-8", newline="\n")
+        if (folder / JOURNAL).is_file():
+            shutil.copyfile(folder / JOURNAL, temporary / JOURNAL)
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""HTML pages: templates with their filters, embedded pictures, and the page of a study."""
+"""HTML pages: templates with their filters, embedded pictures, and the page of a mesh study."""
 
 import re
 from base64 import b64encode
@@ -35,7 +35,7 @@ from bemcontact.report.formatting import (
     vector,
     with_unit,
 )
-from bemcontact.report.verdicts import overall, study_verdicts
+from bemcontact.report.verdicts import mesh_study_verdicts, overall
 
 MANY = 5
 """Number of contenders from which the head of the page counts them instead of listing them."""
@@ -120,7 +120,7 @@ def _width(svg: bytes) -> float:
 
 
 def render(report: JsonObject, pictures: Mapping[str, bytes], spec: str | None) -> str:
-    """Write the page of a study as HTML that needs no other file.
+    """Write the page of a mesh study as HTML that needs no other file.
 
     `report` is the content of report.json, `pictures` are SVG files by name as of `figures.figures_of`, and `spec` is
     the text of the spec as run. A missing picture is left out.
@@ -141,7 +141,7 @@ def _contents(report: JsonObject) -> dict[str, Any]:
     contenders, reference = compared["contenders"], compared["reference"]
     units = Units(**report["units"])
     headline = _headline(report, compared)
-    verdicts = study_verdicts(report, headline)
+    verdicts = mesh_study_verdicts(report, headline)
     answer = _record(level)
     return {
         "report": report,

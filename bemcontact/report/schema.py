@@ -3,9 +3,9 @@
 from typing import Any
 
 from bemcontact.analysis.load_cases import CasesRecord
+from bemcontact.analysis.mesh_study import MeshStudyRecord
 from bemcontact.analysis.reproduction import ReproductionRecord
 from bemcontact.analysis.result import ResultRecord
-from bemcontact.analysis.study import StudyRecord
 from bemcontact.assessment.comparison import ComparisonRecord
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.modelling.gap_design.designed_gap import GapDesign
@@ -13,14 +13,16 @@ from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.parametric.path import LoadPath
 from bemcontact.parametric.sensitivity import Sensitivities
 from bemcontact.serialization import Leaf, Record, schema_of
+from bemcontact.studies.table import StudyRecord
 
 RESULTS: dict[str, type[Leaf] | type[Record]] = {
     "result": ResultRecord,
     "cases": CasesRecord,
     "comparison": ComparisonRecord,
-    "report": StudyRecord,
+    "report": MeshStudyRecord,
     "reproduction": ReproductionRecord,
     "path": ParameterPath,
+    "study": StudyRecord,
     "load_path": LoadPath,
     "sensitivities": Sensitivities,
     "starts": RandomStarts,

@@ -12,8 +12,8 @@ from rich.text import Text
 
 from bemcontact.analysis.check import CheckedProblem
 from bemcontact.analysis.load_cases import CaseResults
+from bemcontact.analysis.mesh_study import MeshLevel, MeshStudy
 from bemcontact.analysis.result import Result
-from bemcontact.analysis.study import MeshLevel, Study
 from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.assessment.comparison import Comparison
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -40,7 +40,14 @@ from bemcontact.report.formatting import (
     with_unit,
     zero_if_negligible,
 )
-from bemcontact.report.verdicts import Verdict, case_verdicts, overall, path_verdicts, result_verdicts, study_verdicts
+from bemcontact.report.verdicts import (
+    Verdict,
+    case_verdicts,
+    mesh_study_verdicts,
+    overall,
+    path_verdicts,
+    result_verdicts,
+)
 
 MANY = 4
 """Number of points up to which those that enter or leave together are named."""
@@ -279,7 +286,7 @@ def table_of(*columns: str, right: frozenset[str] = RIGHT) -> Table:
     return table
 
 
-def study_summary(study: Study) -> RenderableType:
+def mesh_study_summary(study: MeshStudy) -> RenderableType:
     """List each formulation's verdict on the finest mesh, and how the answer changes from mesh to mesh."""
     level = study.finest
     compared, answer = level.comparison, level.answer
@@ -298,7 +305,7 @@ def study_summary(study: Study) -> RenderableType:
         add(shown, "Meshes", study.convergence.remark)
     for note in answer.notes:
         add(shown, "Note", note)
-    for verdict in study_verdicts(study.to_dict()):
+    for verdict in mesh_study_verdicts(study.to_dict()):
         add_verdict(shown, verdict)
     tables = {
         _contender_table(compared): CONTENDERS,
@@ -361,7 +368,7 @@ def _score_table(level: MeshLevel, units: Units) -> Table:
     return table
 
 
-def _mesh_table(study: Study) -> Table:
+def _mesh_table(study: MeshStudy) -> Table:
     """List how the answer changes from mesh to mesh, with the last observed order and what it leads to."""
     convergence = study.convergence
     if convergence is None:
@@ -378,7 +385,7 @@ def _mesh_table(study: Study) -> Table:
     return table
 
 
-def _compared_how(study: Study) -> str:
+def _compared_how(study: MeshStudy) -> str:
     """Size and time of a comparison."""
     level = study.finest
     freedom = (

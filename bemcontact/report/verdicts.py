@@ -1,11 +1,11 @@
-"""Verdicts on the equations and on the mesh: of results, load cases, paths and studies."""
+"""Verdicts on the equations and on the mesh: of results, load cases, paths and mesh studies."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from bemcontact.analysis.load_cases import CaseResults
+from bemcontact.analysis.mesh_study import MeshStudy
 from bemcontact.analysis.result import Result
-from bemcontact.analysis.study import Study
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.assessment.penetration import Misfit
 from bemcontact.parametric.parameter_path import ParameterPath
@@ -43,8 +43,8 @@ def _quality(penetration: JsonObject, solved: bool) -> str:
     return "fair" if solved and not Misfit(penetration["kind"]).serious else "bad"
 
 
-def study_verdicts(report: JsonObject, words: str = "") -> tuple[Verdict, Verdict]:
-    """Verdicts on the equations and on the finest mesh of a study, from its JSON; `words` replace its own.
+def mesh_study_verdicts(report: JsonObject, words: str = "") -> tuple[Verdict, Verdict]:
+    """Verdicts on the equations and on the finest mesh of a mesh study, from its JSON; `words` replace its own.
 
     The equations are solved if the direct solution is proved; a formulation that did not find it is a fair result.
     """
@@ -129,9 +129,9 @@ def shortfall(results: Result | CaseResults) -> str:
     return _shortfall(result_verdicts(results) if isinstance(results, Result) else case_verdicts(results))
 
 
-def study_shortfall(study: Study) -> str:
+def mesh_study_shortfall(study: MeshStudy) -> str:
     """Why a comparison does not hold."""
-    return _shortfall(study_verdicts(study.to_dict()))
+    return _shortfall(mesh_study_verdicts(study.to_dict()))
 
 
 def path_shortfall(path: ParameterPath) -> str:

@@ -1,5 +1,5 @@
 """Problems from YAML, with line and column of each mistake; no other part of the package reads YAML."""
 
-from bemcontact.spec.reading import as_run, load, loads, located, readable, schema
+from bemcontact.spec.reading import as_run, load, loads, located, readable, schema, written_value
 
-__all__ = ["as_run", "load", "loads", "located", "readable", "schema"]
+__all__ = ["as_run", "load", "loads", "located", "readable", "schema", "written_value"]

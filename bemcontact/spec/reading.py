@@ -131,6 +131,14 @@ def readable(text: str, name: str, overrides: Changes = (), variant: str | None 
         return None
 
 
+def written_value(text: str, name: str) -> Any:
+    """Read one value in YAML, as an override has it behind its equals sign; `SpecError` if it is none."""
+    document = _parsed(text, name)
+    if document.messages:
+        raise SpecError(error_text(document.messages))
+    return document.data
+
+
 def schema() -> dict[str, Any]:
     """Describe a problem file, for completion and checks in editors.
 

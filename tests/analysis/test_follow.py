@@ -12,7 +12,7 @@ from tool_problems import BETWEEN, made
 
 import bemcontact
 from bemcontact.adaptivity.adapt import meshed
-from bemcontact.analysis.compare import study
+from bemcontact.analysis.compare import mesh_study
 from bemcontact.analysis.follow import between, follow, sensitivities, stated_value
 from bemcontact.analysis.solve import condense
 from bemcontact.analysis.variation import Variation
@@ -394,6 +394,6 @@ def test_the_accuracy_of_a_path_is_that_of_its_problem_also_when_the_mesh_is_cut
     )
     asked = problem.asked_accuracy
     path = follow(problem, "conditions.c.pressure", 2.0)
-    cut = study(ComparisonOptions(formulations=(FormulationName.QP1,)), problem, refine=(1, 2))
+    cut = mesh_study(ComparisonOptions(formulations=(FormulationName.QP1,)), problem, refine=(1, 2))
     told = [path.start_accuracy, path.end_accuracy, cut.finest.answer.accuracy]
     assert [(item.asked, item.met) for item in told] == [(asked, True)] * 3

@@ -437,11 +437,11 @@ def test_cases_are_compared_one_by_one():
         "raised": {"raised", "press", "table"},
         "edge of the kern": {"edge of the kern", "press", "table"},
     }.items():
-        study = comparing.study(plan, problem.with_case(case), changes=(f"case={case}",))
+        study = comparing.mesh_study(plan, problem.with_case(case), changes=(f"case={case}",))
         assert study.certified
         assert {item.reference for item in study.finest.scores} == names
         assert all(item.judged and item.holds for item in study.finest.scores)
-    changed = comparing.study(plan, problem.with_case("raised"), changes=("tools.press.force.y=-1",))
+    changed = comparing.mesh_study(plan, problem.with_case("raised"), changes=("tools.press.force.y=-1",))
     assert not any(item.judged for item in changed.finest.scores)
 
 

@@ -6,7 +6,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bemcontact import follow, solve, solve_cases
-from bemcontact.analysis.compare import study
+from bemcontact.analysis.compare import mesh_study
 from bemcontact.assessment.penetration import TOLERATED, Misfit
 from bemcontact.bem.surface_gaps import FLUSH, NODES, surface_gaps
 from bemcontact.options import ComparisonOptions
@@ -132,7 +132,7 @@ def test_load_cases_compare_and_paths_say_it():
     cases = solve_cases(problem)
     assert [item.certified for item in cases.results.values()] == [True, False]
     assert not cases.certified
-    compared = study(ComparisonOptions.of("qp3", "tributary", None), problem.with_case("large"), (1, 2))
+    compared = mesh_study(ComparisonOptions.of("qp3", "tributary", None), problem.with_case("large"), (1, 2))
     assert compared.finest.comparison.certified
     assert not compared.certified
     assert compared.heading == "penetrates a surface"

@@ -96,8 +96,8 @@ def test_json_holds_what_the_schema_states(block: Path, tmp_path: Path):
 def test_comparison_that_is_not_certified_ends_with_status_1(block: Path, monkeypatch: pytest.MonkeyPatch):
     """Instead of the block a problem with a spurious local minimum, as in tests/assessment/test_comparison.py."""
     spurious = CondensedContact.from_compliance([[1.0, 2.0], [1.0, 1.0]], [-1.0, -2.0])
-    found = comparing.study(ComparisonOptions.of(["qp1"]), spurious)
-    monkeypatch.setattr(comparing, "study", lambda *_: found)
+    found = comparing.mesh_study(ComparisonOptions.of(["qp1"]), spurious)
+    monkeypatch.setattr(comparing, "mesh_study", lambda *_: found)
     answer = run("compare", block)
     assert answer.exit_code == 1
     assert "Equations      local only." in answer.output

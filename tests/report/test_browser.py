@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 from chromium import executable, opened, started
+from mesh_studies import of_many_settings, on_three_meshes, with_infinite_peak
 from playwright.sync_api import Browser
 from reproductions import on_base_meshes
-from studies import of_many_settings, on_three_meshes, with_infinite_peak
 
 from bemcontact.report import folder
 
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.skipif(executable() is None, reason="there is no Chromi
 
 STUDIES = {"meshes": on_three_meshes, "settings": of_many_settings, "infinite": with_infinite_peak}
 PAPER = "paper"
-"""The page of the paper's problems, beside those of studies."""
+"""The page of the paper's problems, beside those of mesh studies."""
 
 PICTURES = """
 Promise.all([...document.images].map(image => image.decode().then(() => image.naturalWidth * image.width)))

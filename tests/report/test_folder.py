@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mesh_studies import block, on_one_mesh, on_three_meshes, without_a_body
 from reproductions import of_the_cylinder, on_base_meshes
-from studies import block, on_one_mesh, on_three_meshes, without_a_body
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.report import folder
@@ -109,7 +109,7 @@ def test_file_of_the_name_of_the_folder_is_refused(tmp_path: Path):
 KILLED = """
 import json, os, random, signal, sys, time
 from pathlib import Path
-from studies import without_a_body
+from mesh_studies import without_a_body
 from bemcontact.report import folder
 
 place, chance, seen = Path(sys.argv[1]), random.Random(0), set()

@@ -1,6 +1,6 @@
 """Formatting: numbers, vectors, fields and surfaces as text."""
 
-from studies import block
+from mesh_studies import block
 
 from bemcontact.problem import Circle, DeflectedContour, Field, Plane, Polyline, Spline, Units
 from bemcontact.report import formatting

@@ -7,8 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from page_reader import ensure_self_contained, read
-from studies import (
+from mesh_studies import (
     ALL,
     block,
     not_unique,
@@ -19,10 +18,11 @@ from studies import (
     with_infinite_peak,
     without_a_body,
 )
+from page_reader import ensure_self_contained, read
 from tool_problems import BETWEEN, made
 
 from bemcontact.analysis import compare as comparing
-from bemcontact.analysis.study import Study
+from bemcontact.analysis.mesh_study import MeshStudy
 from bemcontact.options import ComparisonOptions
 from bemcontact.report import formatting
 from bemcontact.report.bars import with_bar
@@ -33,7 +33,7 @@ from bemcontact.report.page import render
 SVG = b'<svg xmlns="http://www.w3.org/2000/svg"/>'
 
 
-def report_of(study: Study) -> dict[str, Any]:
+def report_of(study: MeshStudy) -> dict[str, Any]:
     """The report as another program reads it from the file."""
     return json.loads(study.to_json())
 
@@ -42,7 +42,7 @@ PICTURES = dict.fromkeys(("problem", "pressure", "gap", "deformed", "history-qp1
 
 
 @pytest.mark.parametrize("study", ALL, ids=lambda study: study.__name__)
-def test_the_page_is_whole_and_needs_nothing_else(study: Callable[[], Study]):
+def test_the_page_is_whole_and_needs_nothing_else(study: Callable[[], MeshStudy]):
     page = render(report_of(study()), PICTURES, "name: x")
     reader = read(page)
     ensure_self_contained(page, reader)
@@ -148,7 +148,7 @@ def test_sections_without_content_are_left_out():
         (not_unique, "so another contact state may exist"),
     ],
 )
-def test_the_certificate_states_whether_the_solution_is_unique(study: Callable[[], Study], says: str):
+def test_the_certificate_states_whether_the_solution_is_unique(study: Callable[[], MeshStudy], says: str):
     text = read(render(report_of(study()), {}, None)).text
     certificate = text.split("Matrices Run ")[1].split(" Certificate ")[-1].split(" The certificate is about")[0]
     assert says in certificate
@@ -193,7 +193,7 @@ def test_the_page_shows_which_load_cases_act_and_where_the_tools_are():
     cases = {name: {"tools": {"press": {"force": {"y": -20}}}} for name in ("more", "most")}
     tools = {"press": {"zones": "press", "point": [1, 1], "force": {"y": -40}}}
     problem = made(BETWEEN, tools=tools, load_cases=cases, combinations={"half": {"more": 0.5}}, case="half")
-    page = read(render(report_of(comparing.study(ComparisonOptions.of(), problem)), {}, None)).text
+    page = read(render(report_of(comparing.mesh_study(ComparisonOptions.of(), problem)), {}, None)).text
     assert "The load cases 0.5 more act in addition to the permanent loads." in page
     assert "the body presses on it with (0, 50), moment 0 about (1, 1)" in page
 

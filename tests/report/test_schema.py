@@ -8,7 +8,7 @@ import pytest
 import schemas
 from contact_problems import random_contact
 from jsonschema import ValidationError
-from studies import punch, roller
+from mesh_studies import punch, roller
 
 import bemcontact
 from bemcontact.analysis import compare as comparing
@@ -35,7 +35,7 @@ def reports() -> dict[str, dict]:
         ),
         "free": (ComparisonOptions.of(), random_contact(3, 7, 2), (1,)),
     }
-    return {name: json.loads(comparing.study(*case).to_json()) for name, case in cases.items()}
+    return {name: json.loads(comparing.mesh_study(*case).to_json()) for name, case in cases.items()}
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +74,7 @@ def test_lengths_pressures_and_forces_have_their_units():
 
 
 def of_each_kind() -> dict[str, list[Any]]:
-    """Results of each kind but studies, and reproductions of the paper, which are tested with their page."""
+    """Results of each kind but mesh studies, and reproductions of the paper, which are tested with their page."""
     tools = load("models/gallery/body_between_two_tools.yaml", variant="stated mesh").with_case("raised")
     contact = random_contact(3, 7, 2)
     loose = CondensedContact.from_compliance(np.eye(2), [1.0, 1.0])
@@ -91,6 +91,10 @@ def of_each_kind() -> dict[str, list[Any]]:
         ],
         "cases": [bemcontact.solve_cases(cases)],
         "comparison": [bemcontact.compare(contact, starts=2)],
+        "study": [
+            bemcontact.study(roller(), {"conditions.top.pressure": [20.0, -1.0]}),
+            bemcontact.study(cases, {"accuracy": [None]}, ["peak", "force"]),
+        ],
         "path": [
             bemcontact.follow(roller(), "conditions.top.pressure", 20.0, 0.0),
             bemcontact.follow(punch(), "conditions.top.pressure", 1.0),

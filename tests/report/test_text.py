@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from mesh_studies import on_one_mesh
 from messages import assert_states
 from rich.console import Console, RenderableType
-from studies import on_one_mesh
 from tool_problems import BETWEEN, FREE, FREE_CASES, HELD, HELD_CASES, made, not_met
 
 import bemcontact
@@ -394,7 +394,7 @@ def test_check_shows_the_factors_of_the_acting_case():
 
 def test_the_words_of_the_tables_of_a_comparison_are_explained_below_them():
     """Each column whose name is no plain word."""
-    told = " ".join(printed(text.study_summary(on_one_mesh())).split())
+    told = " ".join(printed(text.mesh_study_summary(on_one_mesh())).split())
     for word in (
         "objective:",
         "difference:",

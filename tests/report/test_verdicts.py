@@ -3,22 +3,22 @@
 import pytest
 from accuracies import accuracy, bar
 from markupsafe import escape
-from studies import block
+from mesh_studies import block
 
 import bemcontact
-from bemcontact.analysis.compare import study
+from bemcontact.analysis.compare import mesh_study
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.options import ComparisonOptions
 from bemcontact.report.bars import mesh_in_short
 from bemcontact.report.page import render
 from bemcontact.report.verdicts import (
     in_short,
+    mesh_study_verdicts,
     mesh_verdict,
     overall,
     path_verdicts,
     result_verdicts,
     shortfall,
-    study_verdicts,
 )
 
 
@@ -61,11 +61,11 @@ def test_an_answer_is_good_only_if_both_verdicts_are():
 def test_results_outside_linear_theory_have_the_same_verdict_everywhere():
     """Terminal, page, picture, JSON, exit status and repr: the equations are solved, and the reason is the verdict."""
     soft = bemcontact.solve(block(material={"young_modulus": 5.0, "poisson_ratio": 0.3}))
-    compared = study(ComparisonOptions.of("qp3"), soft.problem or soft.contact, (1,))
+    compared = mesh_study(ComparisonOptions.of("qp3"), soft.problem or soft.contact, (1,))
     assert soft.penetration is not None
     reason, word = soft.penetration.words, "outside linear theory"
     page = render(compared.to_dict(), {}, None)
-    for verdicts in (result_verdicts(soft), study_verdicts(compared.to_dict())):
+    for verdicts in (result_verdicts(soft), mesh_study_verdicts(compared.to_dict())):
         assert (verdicts[0].quality, verdicts[0].word, overall(verdicts)) == ("fair", word, "fair")
         assert verdicts[0].words.startswith(reason)
     assert (soft.holds, compared.holds, soft.to_dict()["certified"]) == (False, False, False)

@@ -6,6 +6,7 @@ Each ``draw_...`` function draws into axes that it is given; each ``figure_of_..
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
 from bemcontact.report.figures.contact import draw_contact, draw_deformed
 from bemcontact.report.figures.design import draw_relief, draw_relieved_pressure, figure_of_design
+from bemcontact.report.figures.mesh_study import draw_convergence, draw_history, figures_of
 from bemcontact.report.figures.page import FORMATS, ensure_known_format, save, vector_graphic
 from bemcontact.report.figures.path import draw_interval_ends, draw_peaks, draw_resultants, figure_of_path
 from bemcontact.report.figures.problem import draw_problem, figure_of_problem
@@ -19,7 +20,7 @@ from bemcontact.report.figures.result import (
     figure_of_cases,
     figure_of_result,
 )
-from bemcontact.report.figures.study import draw_convergence, draw_history, figures_of
+from bemcontact.report.figures.study import draw_output, figures_of_study
 
 __all__ = [
     "FORMATS",
@@ -34,6 +35,7 @@ __all__ = [
     "draw_gaps",
     "draw_history",
     "draw_interval_ends",
+    "draw_output",
     "draw_peaks",
     "draw_pressure",
     "draw_pressures",
@@ -50,6 +52,7 @@ __all__ = [
     "figure_of_result",
     "figures_of",
     "figures_of_reproduction",
+    "figures_of_study",
     "save",
     "vector_graphic",
 ]

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from bemcontact.analysis.mesh_study import MeshLevel
 from bemcontact.analysis.result import Result
-from bemcontact.analysis.study import MeshLevel
 from bemcontact.arrays import Array
 from bemcontact.assessment.comparison import SAME, Contender
 from bemcontact.contact.condensed_contact import CondensedContact

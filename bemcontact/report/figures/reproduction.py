@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.reproduction import PaperStudy, Reproduction, Run, positions
 from bemcontact.problem import Table
 from bemcontact.reference import Expected
+from bemcontact.report.figures.mesh_study import WIDTH, plan_of
 from bemcontact.report.figures.page import (
     BLACK,
     BLUE,
@@ -19,7 +20,6 @@ from bemcontact.report.figures.page import (
     legend_below,
     new_page,
 )
-from bemcontact.report.figures.study import WIDTH, plan_of
 from bemcontact.report.formatting import number
 
 MESHES = (BLUE, VERMILION, GREEN)

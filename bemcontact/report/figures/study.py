@@ -1,171 +1,154 @@
-"""Pictures of a study in a size for pages and telephones, of the iterations, and of convergence with the mesh."""
+"""Pictures of a study of parameters: each output against each parameter, with error bars."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator, NullLocator
 
-from bemcontact.analysis.study import MeshLevel, Study
-from bemcontact.assessment.comparison import Contender
-from bemcontact.assessment.convergence import Convergence
-from bemcontact.bem import mesh
-from bemcontact.contact.solution import Trace
-from bemcontact.options import Weights
-from bemcontact.problem import Problem
-from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
-from bemcontact.report.figures.contact import draw_deformed
+from bemcontact.checks.arguments import is_real
 from bemcontact.report.figures.page import (
     BLACK,
-    COLOURS,
     CYCLE,
+    GREY,
+    VERMILION,
+    labeled,
     legend_below,
     new_page,
     plain,
     short_label,
-    show_decades,
 )
-from bemcontact.report.figures.problem import draw_problem
+from bemcontact.report.study_page import unit_of_output, value_in_words
+from bemcontact.studies.rows import MemberRow
+from bemcontact.studies.table import StudyTable
 
-WIDTH = 5.2
-"""Inches of a picture: its text can be read on a telephone, and two stand side by side on a page."""
-WIDE, SLENDER = 9.5, 2.5
-"""Inches of the picture of a slender body, and how many times it is wider than high."""
-ROUND_OFF = 1e-12
-"""Difference of pressures over the peak that is not worth a picture."""
+CURVES = tuple(color for color in CYCLE if color != VERMILION)
+"""Colors of curves; vermilion is that of members that do not hold."""
+WIDTH, HEIGHT = 5.2, 3.9
+"""Inches of a picture."""
+MOST_PICTURES = 36
+"""Largest number of pictures of a study."""
+MOST_CURVES = 5
+"""Largest number of curves in a picture."""
+MOST_MARKS = 300
+"""Largest number of marks of members that do not hold, in a picture."""
+BEYOND = 0.12
+"""Opacity of the range over all other parameters."""
 
 
-def figures_of(study: Study) -> dict[str, Figure]:
-    """Make all pictures of a study, by name; the finest mesh is drawn.
-
-    Names are "problem" and "deformed" (if a body is known), "pressure", "gap", "difference" (if there is any),
-    "history-qp1" and so on, with the weights if they are not tributary (if histories were recorded), and "convergence"
-    (of several meshes).
-    """
-    level, figures = study.finest, dict[str, Figure]()
-    if study.problem is not None:
-        figures["problem"] = plan_of(study.problem)
-    for name, draw in (("pressure", draw_pressures), ("gap", draw_gaps)):
-        figures[name], axes = _page(3.9)
-        draw(axes, level)
-    if level.answer.boundary is not None:
-        figures["deformed"], axes = _page(4.2)
-        draw_deformed(axes, level.answer)
-    if max((item.largest for item in level.comparison.differences), default=0.0) > ROUND_OFF:
-        figures["difference"], axes = _page(3.9)
-        draw_differences(axes, level)
-    for name, contenders in _recorded(level).items():
-        figures[f"history-{name}"], axes = _page(3.4)
-        draw_history(axes, contenders)
-    if study.convergence is not None:
-        figures["convergence"], axes = _page(3.9)
-        draw_convergence(axes, study.convergence)
+def figures_of_study(study: StudyTable) -> dict[str, Figure]:
+    """Make a picture of each output against each parameter, by caption; at most `MOST_PICTURES`."""
+    figures = dict[str, Figure]()
+    for column in study.columns:
+        for number, axis in enumerate(study.axes):
+            if len(axis.values) > 1 and len(figures) < MOST_PICTURES:
+                figure = new_page(WIDTH, HEIGHT)
+                figure.set_layout_engine("none")
+                draw_output(figure.add_subplot(), study, column, number)
+                figures[f"{column} over {axis.name}{_beside(study, number)}"] = figure
     return figures
 
 
-def _recorded(level: MeshLevel) -> dict[str, list[Contender]]:
-    """Contenders with a recorded history, by formulation and weights."""
-    groups = dict[str, list[Contender]]()
-    for item in level.comparison.everyone:
-        options = item.attempt.options
-        if item.assessment is not None and item.assessment.solution.history:
-            weights = "" if options.weights is Weights.TRIBUTARY else f"-{options.weights.replace('_', '-')}"
-            name = options.formulation.value if options.uses("weights") else "direct"
-            groups.setdefault(f"{name}{weights}", []).append(item)
-    return groups
+def _beside(study: StudyTable, number: int) -> str:
+    """What the picture does with the other parameters."""
+    others = _others(study, number)
+    if not others:
+        return ""
+    if len(others) == 1:
+        return f", by {study.axes[others[0]].name}"
+    return "; the line has all others at their middle values, the band has their whole range"
 
 
-def _page(height: float) -> tuple[Figure, Axes]:
-    """Make a picture without a layout engine; it is cut to its content when it is written."""
-    figure = new_page(WIDTH, height)
-    figure.set_layout_engine("none")
-    return figure, figure.add_subplot()
+def _others(study: StudyTable, number: int) -> list[int]:
+    """Numbers of the other axes that have several values."""
+    return [i for i, axis in enumerate(study.axes) if i != number and len(axis.values) > 1]
 
 
-def plan_of(problem: Problem) -> Figure:
-    """Draw geometry, mesh and conditions, with the legend below; slender bodies get a wider picture."""
-    built = mesh.build(problem)
-    width, height = np.ptp(built.nodes, axis=0)
-    figure = new_page(WIDE if width > SLENDER * height else 6.2, 1.6 + float(np.clip(4.8 * height / width, 3.2, 7.0)))
-    figure.set_layout_engine("none")
-    axes = figure.add_subplot()
-    draw_problem(axes, problem, built)
-    legend = axes.get_legend()
-    assert legend is not None  # edges have roles
-    axes.apply_aspect()
-    inches = axes.get_position().height * figure.get_figheight()
-    axes.legend(
-        handles=legend.legend_handles,
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.5 / inches),
-        ncols=3,
-        frameon=False,
-        fontsize=9,
-    )
-    return figure
-
-
-QUANTITY_DASHES = {"objective": "solid", "infeasibility": "dashed", "residual": "dotted"}
-
-FEW = 30
-"""Iterations that are few enough for a dot each."""
-BELOW_ZERO = -1e-11
-"""An objective below this is not zero to round-off."""
-
-
-def draw_history(axes: Axes, contenders: Sequence[Contender]) -> None:
-    """Draw the magnitude of each recorded quantity over the iterations of contenders of one formulation.
-
-    The objective is zero at the contact state (nearly so with other weights than tributary ones). Markers show where it
-    is negative. Contenders without a history are left out.
-    """
-    recorded = [item for item in contenders if item.assessment is not None and item.assessment.solution.history]
-    below_zero = False
-    for order, contender in enumerate(recorded):
-        alone = COLOURS[contender.attempt.options.formulation] if len(recorded) == 1 else None
-        color = alone or CYCLE[order % len(CYCLE)]
-        for trace in contender.assessment.solution.history if contender.assessment else ():
-            label = trace.quantity if alone else plain(f"{contender.label}: {trace.quantity}")
-            below_zero |= _draw_trace(axes, trace, color, label)
-    if below_zero:
-        axes.scatter([], [], s=16, marker="v", facecolors="white", edgecolors=BLACK, label="objective below zero")
-    show_decades(axes)
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.set_xlabel("iteration")
-    axes.set_ylabel("size, free of units")
+def draw_output(axes: Axes, study: StudyTable, column: str, number: int) -> None:
+    """Draw an output against the parameter of an axis: a curve for each value of another one, or one in the middle."""
+    axis, others = study.axes[number], _others(study, number)
+    places, ticks = _places(axis.values)
+    place = dict(zip(map(repr, axis.values), places, strict=True))
+    if len(others) > 1:
+        _draw_band(axes, study.rows, column, axis.name, place)
+    for label, rows, color in _curves(study, others):
+        _draw_curve(axes, rows, column, axis.name, place, label, color)
+    _draw_doubtful(axes, study.rows, column, axis.name, place)
+    if ticks:
+        axes.set_xticks(places, [short_label(text, 18) for text in ticks])
+    axes.set_xlabel(short_label(axis.name, 60))
+    axes.set_ylabel(labeled(short_label(column, 40), unit_of_output(column, study.units)))
     legend_below(axes)
 
 
-def _draw_trace(axes: Axes, trace: Trace, color: str, label: str) -> bool:
-    """Draw the magnitude of one quantity; return whether it is an objective with negative values."""
-    values = np.array(trace.values)
-    iteration = trace.first + np.arange(len(values))
-    size = np.where(values != 0, np.abs(values), np.nan)
-    mark, dashes = "." if len(values) < FEW else "none", QUANTITY_DASHES[trace.quantity]
-    axes.plot(iteration, size, color=color, linestyle=dashes, linewidth=1.4, marker=mark, label=label)
-    below = (values < BELOW_ZERO) & (trace.quantity == "objective")
-    axes.scatter(iteration[below], size[below], s=16, marker="v", facecolors="white", edgecolors=color, zorder=3)
-    return bool(below.any())
+def _places(values: Sequence[Any]) -> tuple[list[float], list[str]]:
+    """Places of values along an axis: numbers at themselves, others one beside the other with their names."""
+    if all(is_real(value) for value in values):
+        return [float(value) for value in values], []
+    return [float(i) for i in range(len(values))], [value_in_words(value) for value in values]
 
 
-def draw_convergence(axes: Axes, convergence: Convergence) -> None:
-    """Draw the distance of each quantity from its limit over the refinement, with the observed order."""
-    refine = np.array(convergence.refine, float)
-    for order, item in enumerate(convergence.quantities):
-        if item.limit is None:
-            continue
-        distance = np.abs(np.array(item.values) - item.limit) / (abs(item.limit) or 1.0)
-        distance = np.where(distance > 0, distance, np.nan)
-        q = next((q for q in reversed(item.orders) if q is not None), None)
-        order_text = "" if q is None else f", order {q:.2g}"
-        color = CYCLE[order % len(CYCLE)]
-        label = short_label(f"{item.name}{order_text}", 48)
-        axes.plot(refine, distance, color=color, marker="o", markersize=5, linewidth=1.5, label=label)
-    axes.set_xscale("log")
-    show_decades(axes)
-    axes.set_xticks(refine, [f"{parts:g}" for parts in refine])
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xlabel("parts into which each element is cut")
-    axes.set_ylabel("distance from the limit, relative")
-    legend_below(axes)
+def _curves(study: StudyTable, others: Sequence[int]) -> Iterator[tuple[str, list[MemberRow], str]]:
+    """Label, members and color of each curve."""
+    if len(others) == 1:
+        axis = study.axes[others[0]]
+        chosen = np.unique(np.linspace(0, len(axis.values) - 1, MOST_CURVES).round().astype(int)).tolist()
+        for order, position in enumerate(chosen):
+            value = axis.values[position]
+            rows = [row for row in study.rows if row.values[axis.name] == value]
+            yield f"{_last(axis.name)} = {value_in_words(value)}", rows, CURVES[order % len(CURVES)]
+        return
+    middle = {study.axes[i].name: study.axes[i].values[len(study.axes[i].values) // 2] for i in others}
+    rows = [row for row in study.rows if all(row.values[name] == value for name, value in middle.items())]
+    yield "others at their middle values" if others else "", rows, BLACK
+
+
+def _last(name: str) -> str:
+    """Last step of a key, for a legend."""
+    return name.split(",")[0].rpartition(".")[2]
+
+
+def _draw_band(axes: Axes, rows: Sequence[MemberRow], column: str, name: str, place: dict[str, float]) -> None:
+    """Fill between the smallest and the largest value of all members that hold, at each place."""
+    found = dict[float, list[float]]()
+    for row in rows:
+        if row.holds is not False and (value := row.reading(column).value) is not None:
+            found.setdefault(place[repr(row.values[name])], []).append(value)
+    x = sorted(found)
+    if x:
+        low, high = ([pick(found[at]) for at in x] for pick in (min, max))
+        axes.fill_between(x, low, high, color=GREY, alpha=BEYOND, linewidth=0, label="range over all others")
+
+
+def _draw_curve(
+    axes: Axes, rows: Sequence[MemberRow], column: str, name: str, place: dict[str, float], label: str, color: str
+) -> None:
+    """Draw the members that hold, with error bars; the line is interrupted where one does not."""
+    values = [row.reading(column) if row.holds is not False else None for row in rows]
+    x = [place[repr(row.values[name])] for row in rows]
+    y = [np.nan if item is None or item.value is None else item.value for item in values]
+    errors = [0.0 if item is None or item.error is None else item.error for item in values]
+    order = np.argsort(x)
+    axes.errorbar(
+        np.array(x)[order], np.array(y)[order], yerr=np.array(errors)[order], color=color, marker="o", markersize=3,
+        linewidth=1.4, capsize=2, label=plain(label) or None,
+    )  # fmt: skip
+
+
+def _draw_doubtful(axes: Axes, rows: Sequence[MemberRow], column: str, name: str, place: dict[str, float]) -> None:
+    """Mark the members that do not hold: hollow where there is a value, else a cross at the lower edge."""
+    doubtful = [row for row in rows if row.holds is False]
+    with_value = [row for row in doubtful if row.reading(column).value is not None][:MOST_MARKS]
+    if with_value:
+        x = [place[repr(row.values[name])] for row in with_value]
+        y = [row.reading(column).value or 0.0 for row in with_value]
+        axes.scatter(
+            x, y, s=22, facecolors="none", edgecolors=VERMILION, linewidths=1.2, zorder=3, label="does not hold"
+        )
+    failed = sorted({place[repr(row.values[name])] for row in doubtful if row.reading(column).value is None})
+    if failed:
+        axes.plot(
+            failed, [0.03] * len(failed), color=VERMILION, linestyle="none", marker="x", markersize=6, zorder=3,
+            label="no value", transform=axes.get_xaxis_transform(),
+        )  # fmt: skip

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from drawings import block_in_a_corner, curves, drawn
 from matplotlib.figure import Figure
-from studies import (
+from mesh_studies import (
     of_many_settings,
     on_one_mesh,
     on_three_meshes,
@@ -38,7 +38,7 @@ def test_each_pressure_is_drawn_and_none_hides_another():
 def test_of_a_narrow_contact_only_what_is_around_it_is_drawn():
     """As far on either side as it is wide; the frame ends with the last point beyond that, and each curve is whole."""
     problem = bemcontact.load(GALLERY / "hertz_small.yaml")
-    level, axes = comparing.study(ComparisonOptions.of(["qp3"]), problem).finest, Figure().add_subplot()
+    level, axes = comparing.mesh_study(ComparisonOptions.of(["qp3"]), problem).finest, Figure().add_subplot()
     figures.draw_pressures(axes, level)
     contact = level.answer.contact
     (interval,) = level.answer.footprint.intervals
@@ -91,7 +91,7 @@ def test_closed_gaps_are_reported_and_their_round_off_is_not_magnified():
     problem = spec.load(
         Path(__file__).parents[3] / "models" / "gallery" / "block_in_corner.yaml", variant="stated mesh"
     )
-    level, axes = comparing.study(ComparisonOptions.of(["qp3"]), problem).finest, Figure().add_subplot()
+    level, axes = comparing.mesh_study(ComparisonOptions.of(["qp3"]), problem).finest, Figure().add_subplot()
     figures.draw_gaps(axes, level)
     assert "closed everywhere" in [text.get_text() for text in axes.texts]
     assert axes.get_ylim()[1] == level.answer.contact.scales.displacement
@@ -110,7 +110,7 @@ def test_differences_are_relative_to_the_peak():
 
 
 def test_two_zones_are_side_by_side_with_their_own_distances():
-    study = comparing.study(ComparisonOptions.of(["qp3"]), block_in_a_corner())
+    study = comparing.mesh_study(ComparisonOptions.of(["qp3"]), block_in_a_corner())
     axes = Figure().add_subplot()
     figures.draw_pressures(axes, study.finest)
     assert [text.get_text() for text in axes.texts] == ["floor", "wall"]

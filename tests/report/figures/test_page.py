@@ -13,7 +13,7 @@ from drawings import beam_over_a_circle, block_in_a_corner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
-from studies import (
+from mesh_studies import (
     on_one_mesh,
 )
 

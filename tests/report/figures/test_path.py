@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from studies import punch
+from mesh_studies import punch
 
 import bemcontact
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar

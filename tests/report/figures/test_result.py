@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from drawings import block_in_a_corner
 from matplotlib.figure import Figure
-from studies import punch
+from mesh_studies import punch
 from tool_problems import FREE, FREE_CASES, made, not_met, of_peaks
 
 import bemcontact

@@ -1,95 +1,75 @@
-"""Pictures of a study: iterations, convergence, and which pictures there are."""
-
-import dataclasses
-from collections.abc import Callable
-from xml.etree import ElementTree
+"""Pictures of a study: what is drawn, and that what does not hold is drawn differently."""
 
 import numpy as np
-import pytest
-from drawings import curves, drawn
+from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
-from studies import (
-    not_unique,
-    of_many_settings,
-    on_one_mesh,
-    on_three_meshes,
-    without_a_body,
-    without_contact,
-)
 
-from bemcontact.analysis.study import Study
-from bemcontact.assessment.comparison import Contender
-from bemcontact.contact.solution import Trace
+from bemcontact.problem.units import Units
 from bemcontact.report import figures
+from bemcontact.studies.axes import axes_of
+from bemcontact.studies.outputs import Reading
+from bemcontact.studies.rows import MemberRow, MemberStatus, failed_row
+from bemcontact.studies.table import StudyTable
 
 
-def with_history(contender: Contender, *history: Trace) -> Contender:
-    assert contender.assessment is not None
-    solution = dataclasses.replace(contender.assessment.solution, history=history)
-    return dataclasses.replace(contender, assessment=dataclasses.replace(contender.assessment, solution=solution))
+def table(*sizes: int, bad: dict[int, MemberStatus] | None = None) -> StudyTable:
+    """A study whose peak is the number of the member."""
+    axes = axes_of({f"axis {i}": [float(value) for value in range(size)] for i, size in enumerate(sizes)})
+    rows = []
+    for number, position in enumerate(np.ndindex(*sizes)):
+        values = {axis.name: axis.values[i] for axis, i in zip(axes, position, strict=True)}
+        status = (bad or {}).get(number, MemberStatus.HOLDS)
+        if status is MemberStatus.FAILED:
+            rows.append(failed_row(number, values, "no"))
+            continue
+        outputs = {"peak": Reading(value=float(number), error=0.5)}
+        rows.append(
+            MemberRow(number=number, values=values, status=status, equations="", certified=True, met=True,
+                      mesh_error=0.0, message="", outputs=outputs)
+        )  # fmt: skip
+    return StudyTable(name="x", units=Units(), axes=axes, outputs=("peak",), rows=tuple(rows))
 
 
-def test_history_shows_sizes_and_marks_what_is_below_zero():
-    first = with_history(
-        on_one_mesh().finest.comparison.contenders[0],
-        Trace(quantity="infeasibility", first=1, values=(4.0, 0.5)),
-        Trace(quantity="objective", first=3, values=(2.0, -0.25, 0.0)),
-    )
+def drawn(study: StudyTable, axis: int = 0):
     axes = Figure().add_subplot()
-    figures.draw_history(axes, [first])
-    found = curves(axes)
-    assert [*found] == ["infeasibility", "objective"]
-    assert found["infeasibility"].get_xdata() == pytest.approx([1, 2])
-    assert found["objective"].get_xdata() == pytest.approx([3, 4, 5])
-    assert drawn(found["objective"])[:2] == pytest.approx([2.0, 0.25])
-    assert np.isnan(drawn(found["objective"])[2])  # a logarithm has no zero
-    marks = np.concatenate([np.asarray(item.get_offsets()) for item in axes.collections if item.get_label() != "_"])
-    assert [4.0, 0.25] in marks.tolist()
-    legend = axes.get_legend()
-    assert legend is not None
-    assert "objective below zero" in [text.get_text() for text in legend.get_texts()]
+    figures.draw_output(axes, study, "peak", axis)
+    return axes
 
 
-def test_histories_of_several_settings_are_distinguished():
-    trace = Trace(quantity="residual", first=0, values=(1.0, 1e-3))
-    told = [with_history(item, trace) for item in of_many_settings().finest.comparison.contenders[:2]]
-    axes = Figure().add_subplot()
-    figures.draw_history(axes, told)
-    found = curves(axes)
-    assert [*found] == [f"{item.label}: residual" for item in told]
-    assert len({line.get_color() for line in found.values()}) == 2
+def test_a_curve_has_the_values_and_their_errors():
+    axes = drawn(table(4))
+    assert axes.lines[0].get_xydata().tolist() == [[0, 0], [1, 1], [2, 2], [3, 3]]
+    ends = [segment.tolist() for segment in axes.collections[0].get_segments()]
+    assert ends == [[[i, i - 0.5], [i, i + 0.5]] for i in range(4)]
 
 
-def test_convergence_is_drawn_to_the_limit_with_its_order():
-    convergence, axes = on_three_meshes().convergence, Figure().add_subplot()
-    assert convergence is not None
-    figures.draw_convergence(axes, convergence)
-    found = curves(axes)
-    asymmetry = next(item for item in convergence.quantities if item.name == "asymmetry of J M")
-    (label,) = (label for label in found if label.startswith("asymmetry"))
-    assert drawn(found[label]) == pytest.approx(asymmetry.values)
-    assert found[label].get_xdata() == pytest.approx([1, 2, 3])
-    assert label.endswith(f"order {asymmetry.orders[-1]:.2g}")
+def test_members_that_do_not_hold_interrupt_the_curve_and_are_marked():
+    axes = drawn(table(4, bad={1: MemberStatus.NOT_MET, 2: MemberStatus.FAILED}))
+    assert np.isnan(axes.lines[0].get_ydata()).tolist() == [False, True, True, False]
+    (dots,) = (item for item in axes.collections if isinstance(item, PathCollection))
+    assert (dots.get_label(), dots.get_offsets().tolist()) == ("does not hold", [[1.0, 1.0]])
+    (cross,) = (line for line in axes.lines if line.get_label() == "no value")
+    assert cross.get_xdata() == [2.0]
 
 
-def test_each_study_has_its_pictures():
-    assert {"problem", "pressure", "gap", "deformed"} <= figures.figures_of(on_one_mesh()).keys()
-    assert "convergence" in figures.figures_of(on_three_meshes())
-    assert "difference" in figures.figures_of(of_many_settings())
-    for study in (without_a_body, without_contact, not_unique):
-        assert not {"problem", "deformed", "convergence"} & figures.figures_of(study()).keys()
+def test_a_member_without_a_value_is_seen_at_the_end_of_the_axis():
+    axes = drawn(table(4, bad={0: MemberStatus.FAILED}))
+    assert axes.get_xlim()[0] <= 0.0
 
 
-@pytest.mark.parametrize(
-    "study", [on_three_meshes, of_many_settings, without_contact], ids=lambda study: study.__name__
-)
-def test_pictures_are_the_same_each_time_and_light_enough(study: Callable[[], Study]):
-    first, second = (
-        {name: figures.vector_graphic(figure) for name, figure in figures.figures_of(study()).items()} for _ in range(2)
-    )
-    assert first == second
-    for name, picture in first.items():
-        assert len(picture) < 150_000, name
-        root = ElementTree.fromstring(picture)
-        assert root.tag.endswith("svg")
-        assert not [node for node in root.iter() if node.tag.endswith(("}script", "}image"))]
+def test_a_second_axis_gives_curves_and_a_third_one_a_band():
+    two = drawn(table(3, 2))
+    assert [text.get_text() for text in two.get_legend().get_texts()] == ["axis 1 = 0", "axis 1 = 1"]
+    three = drawn(table(3, 2, 2))
+    labels = {text.get_text() for text in three.get_legend().get_texts()}
+    assert labels == {"range over all others", "others at their middle values"}
+    low, high = np.array([[4 * i, 4 * i + 3] for i in range(3)]).T
+    band = three.collections[0].get_paths()[0].vertices
+    assert (band[:, 1].min(), band[:, 1].max()) == (low[0], high[-1])
+
+
+def test_there_is_a_picture_for_each_axis_that_varies():
+    found = figures.figures_of_study(table(3, 1, 2))
+    assert [*found] == ["peak over axis 0, by axis 2", "peak over axis 2, by axis 0"]
+    for figure in found.values():
+        assert figures.vector_graphic(figure).startswith(b"<?xml")

@@ -67,7 +67,7 @@ class LevelRecord(Record):
     """Differences between the direct solution and the references."""
 
 
-class StudyRecord(Record):
+class MeshStudyRecord(Record):
     """A problem compared on one mesh or several; JSON has the verdict before the numbers of each mesh.
 
     [L] is the unit of length and [p] that of pressure, force over length squared. A number without either has no unit.
@@ -148,7 +148,7 @@ class MeshLevel:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Study(Recorded):
+class MeshStudy(Recorded):
     """A problem compared on one mesh or several."""
 
     settings: Settings
@@ -158,7 +158,7 @@ class Study(Recorded):
 
     def __repr__(self) -> str:
         """One line: name, meshes, verdict."""
-        return f"<Study of {self.name!r} on {len(self.levels)} meshes: {self.verdict}>"
+        return f"<MeshStudy of {self.name!r} on {len(self.levels)} meshes: {self.verdict}>"
 
     @property
     def finest(self) -> MeshLevel:
@@ -216,10 +216,10 @@ class Study(Recorded):
         """Time of all stages on all meshes [s]."""
         return sum(sum(level.answer.seconds.values()) for level in self.levels)
 
-    def record(self) -> StudyRecord:
+    def record(self) -> MeshStudyRecord:
         """Return the record that is written as report.json."""
         problem = self.problem
-        return StudyRecord(
+        return MeshStudyRecord(
             name=self.name,
             description="" if problem is None else problem.description,
             certified=self.certified,

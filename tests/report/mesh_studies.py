@@ -1,9 +1,9 @@
-"""Studies of all kinds that a page and its pictures have to show; each is made once."""
+"""Mesh studies of all kinds that a page and its pictures have to show; each is made once."""
 
 from functools import cache
 
 from bemcontact.analysis import compare as comparing
-from bemcontact.analysis.study import Study
+from bemcontact.analysis.mesh_study import MeshStudy
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.options import ComparisonOptions
 from bemcontact.problem import Problem
@@ -73,56 +73,56 @@ def punch(**changes: object) -> Problem:
 
 
 @cache
-def with_infinite_peak() -> Study:
+def with_infinite_peak() -> MeshStudy:
     """The punch, on a mesh that is found and on a finer one."""
-    return comparing.study(ComparisonOptions.of(), punch(), (1, 2))
+    return comparing.mesh_study(ComparisonOptions.of(), punch(), (1, 2))
 
 
 @cache
-def on_a_coarse_mesh() -> Study:
+def on_a_coarse_mesh() -> MeshStudy:
     """The roller on its stated mesh, whose error is above the accuracy asked."""
-    return comparing.study(ComparisonOptions.of(["qp3"]), roller())
+    return comparing.mesh_study(ComparisonOptions.of(["qp3"]), roller())
 
 
 @cache
-def on_one_mesh() -> Study:
+def on_one_mesh() -> MeshStudy:
     """The block, with three random starts."""
-    return comparing.study(ComparisonOptions.of(starts=3), block())
+    return comparing.mesh_study(ComparisonOptions.of(starts=3), block())
 
 
 @cache
-def on_three_meshes() -> Study:
+def on_three_meshes() -> MeshStudy:
     """The roller, with two random starts."""
-    return comparing.study(ComparisonOptions.of(starts=2), roller(), (1, 2, 3))
+    return comparing.mesh_study(ComparisonOptions.of(starts=2), roller(), (1, 2, 3))
 
 
 @cache
-def of_many_settings() -> Study:
+def of_many_settings() -> MeshStudy:
     """The roller beside Hertz, with weights that are refused, and with which QP2 ends far from the contact state."""
     hertz = {"kind": "hertz", "load": 480, "radius": 8, "half": True}
     plan = ComparisonOptions.of(weights=["tributary", "consistent"], penalties=[1.0, 1e3])
-    return comparing.study(plan, roller(reference={"Hertz": hertz}))
+    return comparing.mesh_study(plan, roller(reference={"Hertz": hertz}))
 
 
 @cache
-def without_a_body() -> Study:
+def without_a_body() -> MeshStudy:
     """Three points, of which two touch; no boundary stands behind them."""
     compliance = [[2.0, 0.5, 0.0], [0.5, 2.0, 0.5], [0.0, 0.5, 2.0]]
-    return comparing.study(ComparisonOptions.of(), CondensedContact.from_compliance(compliance, [-1.0, -0.5, 1.0]))
+    return comparing.mesh_study(ComparisonOptions.of(), CondensedContact.from_compliance(compliance, [-1.0, -0.5, 1.0]))
 
 
 @cache
-def without_contact() -> Study:
+def without_contact() -> MeshStudy:
     """Three points, none of which touches."""
     compliance = [[2.0, 0.5, 0.0], [0.5, 2.0, 0.5], [0.0, 0.5, 2.0]]
-    return comparing.study(ComparisonOptions.of(), CondensedContact.from_compliance(compliance, [1.0, 0.5, 1.0]))
+    return comparing.mesh_study(ComparisonOptions.of(), CondensedContact.from_compliance(compliance, [1.0, 0.5, 1.0]))
 
 
 @cache
-def not_unique() -> Study:
+def not_unique() -> MeshStudy:
     """Two points, of which each holds the body without the other: pressures (1, 0), (0, 1) and both together."""
     contact = CondensedContact.from_compliance([[1.0, 2.0], [2.0, 1.0]], [-1.0, -1.0])
-    return comparing.study(ComparisonOptions.of(["qp1", "qp2"]), contact)
+    return comparing.mesh_study(ComparisonOptions.of(["qp1", "qp2"]), contact)
 
 
 ALL = (

@@ -30,7 +30,7 @@ def block(pressure: float = 3.0) -> Problem:
 def test_a_uniform_pressure_is_found_on_each_mesh():
     said = []
     options = ComparisonOptions.of(starts=2)
-    found = comparing.study(options, block(), (2, 1), lambda stage, now: said.append((stage, now)))
+    found = comparing.mesh_study(options, block(), (2, 1), lambda stage, now: said.append((stage, now)))
     assert found.certified
     assert [level.refine for level in found.levels] == [1, 2]
     assert found.finest.refine == 2
@@ -44,7 +44,7 @@ def test_a_uniform_pressure_is_found_on_each_mesh():
 
 
 def test_one_mesh_has_no_convergence():
-    found = comparing.study(ComparisonOptions.of(["qp1"]), block())
+    found = comparing.mesh_study(ComparisonOptions.of(["qp1"]), block())
     assert found.convergence is None
     data = json.loads(found.to_json())
     assert data["convergence"] is None
@@ -67,19 +67,19 @@ def test_one_mesh_has_no_convergence():
     ],
 )
 def test_references_of_a_changed_problem_are_not_judged(changes: tuple[str, ...], judged: bool):
-    found = comparing.study(ComparisonOptions.of(["qp3"]), block(), changes=changes)
+    found = comparing.mesh_study(ComparisonOptions.of(["qp3"]), block(), changes=changes)
     assert {score.judged for score in found.finest.scores} == {judged}
     assert any("was changed (--set)" in item.remark for item in found.finest.expected) is not judged
 
 
 def test_a_condensed_problem_has_no_mesh_and_no_references():
     contact = random_contact(1, 6, 1)
-    found = comparing.study(ComparisonOptions.of(), contact)
+    found = comparing.mesh_study(ComparisonOptions.of(), contact)
     assert found.problem is None
     assert found.finest.expected == ()
     assert found.to_dict()["levels"][0]["dof"] is None
     with pytest.raises(OptionError, match="no mesh to refine"):
-        comparing.study(ComparisonOptions.of(), contact, (1, 2))
+        comparing.mesh_study(ComparisonOptions.of(), contact, (1, 2))
 
 
 @pytest.mark.parametrize(
@@ -107,7 +107,7 @@ def test_mistakes_in_options_are_found_before_any_work(options: dict, words: str
 @pytest.mark.parametrize("refine", [(), (1, 1), (0,), (1.5,)])
 def test_mistakes_in_refinements_are_found(refine: tuple):
     with pytest.raises(OptionError, match="refinement"):
-        comparing.study(ComparisonOptions.of(), block(), refine)
+        comparing.mesh_study(ComparisonOptions.of(), block(), refine)
 
 
 def test_a_file_name_is_no_problem():

@@ -1,0 +1,206 @@
+"""The page of a study of parameters, its summary in the terminal, and its rows in a notebook."""
+
+from collections.abc import Iterator, Mapping
+from html import escape
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from bemcontact.errors import escaped_lines
+from bemcontact.problem.units import Units
+from bemcontact.report.bars import NOTHING, error_percent, with_error
+from bemcontact.report.formatting import number, plural, seconds_in_words, sentence_case, with_unit
+from bemcontact.report.page import Picture, picture, template
+from bemcontact.report.text import add, add_verdict, list_of_facts, table_of
+from bemcontact.report.verdicts import Verdict
+from bemcontact.studies.outputs import DIMENSIONS, Reading
+from bemcontact.studies.rows import MemberRow, MemberStatus
+from bemcontact.studies.table import StudyTable
+
+MOST_ROWS = 2000
+"""Largest number of rows on a page; the tables beside it have all."""
+MOST_NAMED = 5
+"""Members that do not hold, and that are named in the terminal."""
+IN_SHORT = 10
+"""Rows in a notebook."""
+QUALITY = {
+    MemberStatus.HOLDS: "good",
+    MemberStatus.NOT_ASSESSED: "fair",
+    MemberStatus.NOT_MET: "fair",
+    MemberStatus.NOT_CERTIFIED: "bad",
+    MemberStatus.FAILED: "bad",
+}
+"""Status of a member -> quality."""
+ERRORS = (
+    "Numbers after ± are estimated errors, from the change of each number when every element is cut in two. They are "
+    "not proved."
+)
+
+
+def study_verdicts(study: StudyTable) -> tuple[Verdict, Verdict]:
+    """Verdicts on the equations and on the meshes of all members together."""
+    total, rows = len(study.rows), study.rows
+    bad = sum(not row.certified for row in rows)
+    word = "all proved" if not bad else f"{bad} of {total} not proved"
+    words = "Each member has a unique solution that is proved." if not bad else _worst(rows, certified=False)
+    equations = Verdict("Equations", "bad" if bad else "good", word, words)
+    return equations, _mesh_verdict([row for row in rows if row.status is not MemberStatus.FAILED])
+
+
+def _mesh_verdict(rows: list[MemberRow]) -> Verdict:
+    """Verdict on the meshes of the members that have a result."""
+    unmet = [row for row in rows if row.met is False]
+    unknown = [row for row in rows if row.met is None]
+    if unmet:
+        return Verdict("Mesh", "fair", f"not met by {len(unmet)} of {len(rows)}", _sentence(unmet[0]))
+    if unknown:
+        word = "not assessed" if len(unknown) == len(rows) else f"not assessed for {len(unknown)} of {len(rows)}"
+        return Verdict("Mesh", "fair", word, "No accuracy is asked for, or errors were not estimated.")
+    worst = max((row.mesh_error or 0.0 for row in rows), default=0.0)
+    word = f"error at most {error_percent(worst)}" if rows else "no member has a result"
+    return Verdict("Mesh", "good" if rows else "bad", word, "Each member is as accurate as was asked." if rows else "")
+
+
+def _worst(rows: tuple[MemberRow, ...], *, certified: bool) -> str:
+    """Say of the first member that is not certified what is wrong."""
+    return _sentence(next(row for row in rows if row.certified is certified))
+
+
+def _sentence(row: MemberRow) -> str:
+    """What is wrong with a member, in a sentence that names it."""
+    text = sentence_case(row.message or f"{row.status}")
+    return f"Member {row.number} ({values_in_words(row)}): {text}{'' if text.endswith('.') else '.'}"
+
+
+def values_in_words(row: MemberRow) -> str:
+    """The values of a member: ``conditions.top.pressure = 10, variant = fine``."""
+    return ", ".join(f"{key} = {value_in_words(value)}" for key, value in row.values.items())
+
+
+def value_in_words(value: Any) -> str:
+    """A value on an axis."""
+    return f"{value:.10g}" if isinstance(value, float) else str(value)
+
+
+def unit_of_output(column: str, units: Units) -> str:
+    """Label of the unit of an output; empty for numbers and where a label is missing."""
+    attribute = DIMENSIONS.get(column.partition(".")[0], "")
+    return getattr(units, attribute) if attribute else ""
+
+
+def reading_in_words(reading: Reading) -> str:
+    """A number with its error; a dash where there is none."""
+    if reading.value is None:
+        return NOTHING
+    return with_error(reading.value, reading.error) if reading.error else number(reading.value)
+
+
+def render(study: StudyTable, pictures: Mapping[str, bytes], spec: str | None) -> str:
+    """Write the page of a study as HTML that needs no other file; `pictures` are SVG files by their captions."""
+    verdicts = study_verdicts(study)
+    return template("study.html").render(
+        study=study,
+        version=study.record().version,
+        verdicts=verdicts,
+        overall=_overall(study),
+        counts=[(status, count, QUALITY[MemberStatus(status)]) for status, count in study.counts.items()],
+        axes=[(axis.name, *_extent(axis.values)) for axis in study.axes],
+        columns=[(name, unit_of_output(name, study.units)) for name in study.columns],
+        rows=[*_cells(study, MOST_ROWS)],
+        most=MOST_ROWS,
+        pictures=[_picture(name, svg) for name, svg in pictures.items()],
+        errors=ERRORS,
+        spec=spec,
+    )
+
+
+def _overall(study: StudyTable) -> str:
+    """Quality of the worst member."""
+    qualities = {QUALITY[row.status] for row in study.rows}
+    return next((quality for quality in ("bad", "fair", "good") if quality in qualities), "bad")
+
+
+def _extent(values: tuple[Any, ...]) -> tuple[int, str]:
+    """Number of values on an axis, and which they are."""
+    words = [*map(value_in_words, values)]
+    return len(words), ", ".join(words) if len(words) <= 12 else f"{', '.join(words[:3])}, …, {words[-1]}"
+
+
+def _cells(study: StudyTable, most: int) -> Iterator[dict[str, Any]]:
+    """Cells of each row."""
+    for row in study.rows[:most]:
+        yield {
+            "number": row.number,
+            "values": [value_in_words(value) for value in row.values.values()],
+            "status": str(row.status),
+            "quality": QUALITY[row.status],
+            "mesh": NOTHING if row.mesh_error is None else error_percent(row.mesh_error),
+            "outputs": [reading_in_words(row.reading(name)) for name in study.columns],
+            "message": sentence_case(row.message),
+        }
+
+
+def _picture(caption: str, svg: bytes) -> Picture:
+    """A picture with its caption."""
+    return picture(svg, caption, f"{caption}, with error bars; members that do not hold are marked")
+
+
+def study_summary(study: StudyTable, seconds: float, place: str | None = None) -> RenderableType:
+    """List axes, the range of each output, the members that do not hold, and the verdicts."""
+    axes = table_of("varied", "values")
+    for axis in study.axes:
+        count, words = _extent(axis.values)
+        axes.add_row(*map(Text, (axis.name, f"{count}: {words}")))
+    outputs = table_of("output", "smallest", "at", "largest", "at ")
+    for name in study.columns:
+        outputs.add_row(*map(Text, (name, *_range_of(study, name))))
+    shown = list_of_facts()
+    for status, count in study.counts.items():
+        add(shown, sentence_case(status), f"{count} {plural('member', count)}")
+    verdicts = study_verdicts(study)
+    short = [row for row in study.rows if row.holds is False]
+    for row in short[:MOST_NAMED]:
+        if not any(_sentence(row) in verdict.words for verdict in verdicts):
+            add(shown, "Note", _sentence(row))
+    if len(short) > MOST_NAMED:
+        add(shown, "Note", f"{len(short) - MOST_NAMED} further members do not hold; the table has the reason of each")
+    if place is not None:
+        add(shown, "Written", place)
+    for verdict in verdicts:
+        add_verdict(shown, verdict)
+    how = f"{len(study.rows)} {plural('member', len(study.rows))}, {seconds_in_words(seconds)}"
+    return Group(Text(study.name, "bold"), Text(how, "dim"), "", axes, "", outputs, "", shown)
+
+
+def _range_of(study: StudyTable, column: str) -> tuple[str, str, str, str]:
+    """Smallest and largest value of an output among the members that hold, each with its member."""
+    unit = unit_of_output(column, study.units)
+    rows = [row for row in study.rows if row.holds is not False and row.reading(column).value is not None]
+    if not rows:
+        return NOTHING, "", NOTHING, ""
+    values = [float(f"{row.reading(column).value:.9g}") for row in rows]  # of equal ones the first, not by round-off
+    ends = (rows[values.index(pick(values))] for pick in (min, max))
+    (low, at_low), (high, at_high) = (
+        (with_unit(reading_in_words(row.reading(column)), unit), f"member {row.number}") for row in ends
+    )
+    return low, at_low, high, at_high
+
+
+def rows_in_short(study: StudyTable) -> str:
+    """The line of `repr` and the first rows as an HTML table, for a notebook."""
+    names = [axis.name for axis in study.axes]
+    head = "".join(f"<th>{_html(name)}</th>" for name in (*names, "status", *study.columns))
+    rows = ((*item["values"], item["status"], *item["outputs"]) for item in _cells(study, IN_SHORT))
+    body = "".join("<tr>" + "".join(f"<td>{_html(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<p>{_html(repr(study))}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _html(text: str) -> str:
+    """Text in HTML without hidden characters."""
+    return escape(escaped_lines(text))
+
+
+def study_shortfall(study: StudyTable) -> str:
+    """Why a study does not hold."""
+    return "; ".join(f"{item.of}: {item.word}. {item.words}" for item in study_verdicts(study) if not item.good)

@@ -1,0 +1,204 @@
+"""Studies of parameters: a grid of values, solved by several workers, kept in a folder."""
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bemcontact.analysis.solve import AskedAccuracy, Progress
+from bemcontact.checks.arguments import ensure_callable, file_path, text_of_argument, whole_number
+from bemcontact.errors import ProblemError
+from bemcontact.problem.problem import Problem
+from bemcontact.report import folder as folders
+from bemcontact.report.study_page import rows_in_short
+from bemcontact.studies.cluster import ensure_dask, rows_by_dask
+from bemcontact.studies.journal import JOURNAL, Journal, opened, recorded
+from bemcontact.studies.outputs import chosen
+from bemcontact.studies.plan import StudyPlan, study_plan
+from bemcontact.studies.rows import MemberRow, row_from
+from bemcontact.studies.table import StudyTable, sorted_rows
+from bemcontact.studies.work import tasks_of
+from bemcontact.studies.workers import Rows, broken_pipes_are_errors, rows_by_processes, rows_here
+
+STAGE = "studying"
+"""Name of the stage in progress."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Study(StudyTable):
+    """A study of parameters: a row for each member, with its outputs, their errors and its verdicts.
+
+    Parameters
+    ----------
+    name : of the problem
+    units : labels of the units
+    axes : what is varied; the first axis changes slowest
+    outputs : names of the outputs that are shown
+    rows : members in the order of the grid; `table` has them as columns
+    """
+
+    def _repr_html_(self) -> str:
+        """The line of `repr` and the first rows, for a notebook."""
+        return rows_in_short(self)
+
+    def save(self, folder: str | Path, spec: str | None = None) -> None:
+        """Write the study into a folder: page, tables, pictures.
+
+        Parameters
+        ----------
+        folder : a new one, or one with an earlier study, which is replaced
+        spec : text of the problem as run, for the page, if there is one
+
+        Raises
+        ------
+        OSError
+            If the folder cannot be written, or holds other files.
+        """
+        folders.save_study(self, file_path(folder, "folder"), spec)
+
+
+def study(
+    problem: Problem,
+    vary: Mapping[Any, Sequence[Any]],
+    outputs: Sequence[str] | None = None,
+    *,
+    folder: str | Path | None = None,
+    workers: int = 1,
+    scheduler: str | None = None,
+    accuracy: AskedAccuracy = "stated",
+    progress: Progress | None = None,
+) -> Study:
+    """Solve a problem for all combinations of some values, with one row for each.
+
+    A member that fails, or that is not certified or not accurate enough, is a row that says so. Members whose mesh is
+    stated, and which differ in loads, gaps and tools only, are condensed together.
+
+    Parameters
+    ----------
+    problem : Problem
+    vary : lists of values by key, such as ``{"conditions.top.pressure": [10, 20]}``. Keys are those of
+        `Problem.with_value`; "variant"; "case" for load cases; "load_cases.wind" for the factor of one. A tuple of keys
+        takes the same values. Of a problem with load cases all are solved, unless one is chosen.
+    outputs : names of outputs, such as "peak", "resultant", "force", "length.foot"; each row keeps all of them
+    folder : for tables, page and pictures, and for a journal from which a run that ended early goes on
+    workers : number of processes; 1 solves in this process. With more, a script needs the line
+        ``if __name__ == "__main__":``, because each process imports it.
+    scheduler : address of a Dask scheduler, on whose workers the members are solved; needs the extra ``dask``
+    accuracy : relative, to which a mesh is found for each member, in place of that of the problem
+    progress : called with two texts, the name of the stage and how far it has come
+
+    Returns
+    -------
+    Study
+        Check `holds`.
+
+    Raises
+    ------
+    ProblemError
+        If a key, a value or an output is wrong by itself. This is found before anything is solved.
+    OSError
+        If the folder cannot be written, or holds other files.
+    """
+    ensure_callable(progress, "progress")
+    plan = study_plan(problem, vary, accuracy)
+    shown = chosen(outputs, problem)
+    count = whole_number(workers, "number of workers", 1)
+    place = None if folder is None else file_path(folder, "folder")
+    if scheduler is not None:
+        text_of_argument(scheduler, "scheduler")
+    return study_of_plan(plan, shown, place, count, scheduler, progress)
+
+
+def study_of_plan(
+    plan: StudyPlan,
+    outputs: tuple[str, ...],
+    folder: Path | None,
+    workers: int,
+    scheduler: str | None,
+    progress: Progress | None,
+    spec: str | None = None,
+) -> Study:
+    """Solve the members of a plan that the journal of the folder does not have, and write the folder.
+
+    Errors as of `study`; `spec` is the text of the problem as run.
+    """
+    if scheduler is not None:
+        ensure_dask()
+    if folder is not None:
+        folders.ensure_folder_writable(folder, folders.STUDY)
+    rows = _computed(plan, folder, lambda tasks: _workers(plan, tasks, workers, scheduler), progress)
+    problem = plan.problem
+    done = Study(name=problem.title, units=problem.units, axes=plan.axes, outputs=outputs, rows=rows)
+    if folder is not None:
+        _report(progress, "report", "")
+        done.save(folder, spec)
+    return done
+
+
+def _workers(plan: StudyPlan, tasks: Iterator[Any], workers: int, scheduler: str | None) -> Rows:
+    """Who solves the tasks."""
+    if scheduler is not None:
+        return rows_by_dask(plan, tasks, scheduler)
+    return rows_here(plan, tasks) if workers == 1 else rows_by_processes(plan, tasks, workers)
+
+
+def _computed(
+    plan: StudyPlan, folder: Path | None, by: Callable[[Iterator[Any]], Rows], progress: Progress | None
+) -> tuple[MemberRow, ...]:
+    """Rows of all members: those in the journal of the folder, and the others as they are solved."""
+    keys = plan.keys()
+    with broken_pipes_are_errors(), _journal(folder) as journal:
+        kept = {} if folder is None else recorded(folder / JOURNAL)
+        rows = {i: row_from(kept[key], i, plan.values(i)) for i, key in enumerate(keys) if key in kept}
+        pace = _Pace(total=len(plan), before=len(rows), progress=progress)
+        pace.say(len(rows))
+        with closing(by(tasks_of(plan, [number in rows for number in range(len(plan))]))) as solved:
+            for row in solved:
+                rows[row.number] = row
+                if journal is not None:
+                    journal.add(keys[row.number], row)
+                pace.say(len(rows))
+    if len(rows) < len(plan):
+        raise ProblemError(f"{len(plan) - len(rows)} members were not solved; run the study again")
+    return sorted_rows(rows)
+
+
+@contextmanager
+def _journal(folder: Path | None) -> Iterator[Journal | None]:
+    """The journal in a folder; None without a folder."""
+    with nullcontext() if folder is None else opened(folder) as journal:
+        yield journal
+
+
+class _Pace:
+    """How far a study has come, how fast it goes, and how long it will take."""
+
+    def __init__(self, total: int, before: int, progress: Progress | None) -> None:
+        self._total, self._before, self._progress = total, before, progress
+        self._begin = time.perf_counter()
+
+    def say(self, done: int) -> None:
+        """Report the number of members that are done."""
+        passed = time.perf_counter() - self._begin
+        words = f"{done} of {self._total} members"
+        if done > self._before and passed > 0:
+            rate = (done - self._before) / passed
+            words += f", {rate:.2g} per second, about {_duration((self._total - done) / rate)} left"
+        elif self._before:
+            words += ", from the journal"
+        _report(self._progress, STAGE, words)
+
+
+def _duration(seconds: float) -> str:
+    """Write a duration: 12 s, 3 min, 2.5 h."""
+    if seconds < 100:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
+
+
+def _report(progress: Progress | None, stage: str, now: str) -> None:
+    """Report a stage, if somebody listens."""
+    if progress is not None:
+        progress(stage, now)

@@ -1,0 +1,172 @@
+"""Axes of a study: keys of a problem, and the values that they take."""
+
+import json
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+
+from bemcontact.checks.arguments import instance_of, shown, text_of_argument
+from bemcontact.errors import Issue, KeyPath, OptionError, ProblemError, SpecError
+from bemcontact.problem.key_path import parsed_path
+from bemcontact.spec import written_value
+
+VARIANT, CASE = "variant", "case"
+"""Keys of an axis whose values are names of variants, and of load cases or combinations."""
+MOST_MEMBERS = 1_000_000
+"""Largest number of members of a study."""
+_RANGE = re.compile(r"\s*([^:\s]+)\s*:\s*([^:\s]+)\s*:\s*([^:\s]+)\s*")
+_PART_OF_RANGE = re.compile(r"\s*[-+.\d][-+.\deE]*(\s*:\s*[-+.\deE]*)+")
+_OPENING, _CLOSING, _QUOTES = "[{(", "]})", "\"'"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axis:
+    """Keys that take the same value, and the values one after the other."""
+
+    keys: tuple[str, ...]
+    values: tuple[Any, ...]
+
+    @property
+    def name(self) -> str:
+        """Key, or keys with commas between them."""
+        return ",".join(self.keys)
+
+    @property
+    def paths(self) -> tuple[KeyPath, ...]:
+        """The keys as paths."""
+        return tuple(map(parsed_path, self.keys))
+
+    @property
+    def of_variants(self) -> bool:
+        """Whether the values are names of variants."""
+        return self.keys == (VARIANT,)
+
+
+def axes_of(vary: Mapping[Any, Any]) -> tuple[Axis, ...]:
+    """Read axes from values by key; `ProblemError` if a key occurs twice, or an axis has no values or equal ones."""
+    instance_of(vary, Mapping, "vary", 'give values by key, such as {"conditions.top.pressure": [10, 20]}')
+    axes = tuple(_axis(keys, values) for keys, values in vary.items())
+    if not axes:
+        raise OptionError("there is nothing to vary; give values by key")
+    stated = [path for axis in axes for path in axis.paths]
+    for number, path in enumerate(stated):
+        if path in stated[:number]:
+            raise OptionError(Issue(path=path, message="the key is varied twice; give all its values at once"))
+    count = int(np.prod([len(axis.values) for axis in axes], dtype=float))
+    if count > MOST_MEMBERS:
+        raise OptionError(f"the study has {count} members, and at most {MOST_MEMBERS} are possible; take fewer values")
+    return axes
+
+
+def _axis(keys: object, values: object) -> Axis:
+    """One axis from a key, several keys with commas between them or in a tuple, and values."""
+    parts = keys if isinstance(keys, tuple) else text_of_argument(keys, "a key of vary").split(",")
+    axis = Axis(keys=tuple(text_of_argument(part, "a key of vary").strip() for part in parts), values=())
+    if (paths := axis.paths) and len(paths) > 1 and {(VARIANT,), (CASE,)} & {*paths}:
+        raise OptionError(f"{axis.name}: variants and load cases are varied alone, without other keys")
+    if isinstance(values, str | bytes | Mapping) or not hasattr(values, "__iter__"):
+        raise OptionError(f"{axis.name}: a list of values is needed; found {shown(values)}")
+    listed = tuple(map(_plain, cast(Sequence[object], values)))
+    if not listed:
+        raise OptionError(f"{axis.name}: there are no values")
+    seen = set[str]()
+    for value in listed:
+        if (text := _text(axis.name, value)) in seen:
+            raise OptionError(f"{axis.name}: the value {shown(value)} occurs twice; remove one")
+        seen.add(text)
+        if axis.keys[0] in (VARIANT, CASE) and not isinstance(value, str):
+            raise OptionError(f"{axis.name}: a name is needed; found {shown(value)}")
+    return Axis(keys=axis.keys, values=listed)
+
+
+def _text(name: str, value: object) -> str:
+    """Write a value as JSON, a whole number as another number; `OptionError` if it is none that JSON has."""
+    try:
+        number = float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+        return json.dumps(number, sort_keys=True, allow_nan=False)
+    except (TypeError, ValueError, OverflowError):
+        raise OptionError(f"{name}: numbers, texts and lists can be varied; found {shown(value)}") from None
+
+
+def _plain(value: object) -> Any:
+    """A number or an array of NumPy as Python's own, a tuple as a list; other values as they are."""
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    return [*map(_plain, value)] if isinstance(value, tuple | list) else value
+
+
+def written_axes(texts: Sequence[str]) -> dict[str, list[Any]]:
+    """Read axes as `written_axis` does; `OptionError` for keys that are given twice."""
+    axes = dict[str, list[Any]]()
+    for keys, values in map(written_axis, texts):
+        if keys in axes:
+            raise OptionError(f"{keys} is given twice; give all its values at once")
+        axes[keys] = values
+    return axes
+
+
+def written_axis(text: str) -> tuple[str, list[Any]]:
+    """Read an axis such as ``conditions.top.pressure=10:50:5`` or ``variant=fine,coarse``: keys and values.
+
+    `OptionError` says what is wrong.
+    """
+    keys, equals, written = _at_equals(text)
+    if not equals:
+        raise OptionError(f"{text}: there is no '='; write {text}=a:b:n for n values from a to b, or {text}=v1,v2")
+    if keys.strip() in (VARIANT, CASE):
+        return keys, [item.strip().strip(_QUOTES) for item in _items(written)]
+    if parts := _RANGE.fullmatch(written):
+        return keys, _range(keys, *parts.groups())
+    if _PART_OF_RANGE.fullmatch(written):
+        raise OptionError(f"{keys}: expected a:b:n for n values from a to b, or v1,v2,v3; found {written.strip()}")
+    try:
+        return keys, [written_value(item, keys) for item in _items(written)]
+    except SpecError as error:
+        raise OptionError(str(error)) from None
+
+
+def _at_equals(text: str) -> tuple[str, str, str]:
+    """Text before the equals sign, the sign, and the text behind it."""
+    keys, equals, written = text.partition("=")
+    return keys.strip(), equals, written
+
+
+def _range(keys: str, first: str, last: str, count: str) -> list[float]:
+    """Values in equal steps from first to last."""
+    try:
+        start, end, number = float(first), float(last), int(count)
+    except ValueError:
+        raise OptionError(
+            f"{keys}: expected a:b:n, two numbers and how many values; found {first}:{last}:{count}"
+        ) from None
+    if not np.isfinite([start, end]).all() or number < 2 or start == end:
+        reason = "a range has two different finite ends and at least 2 values"
+        raise OptionError(f"{keys}: {reason}; found {first}:{last}:{count}")
+    if number > MOST_MEMBERS:
+        raise OptionError(f"{keys}: at most {MOST_MEMBERS} values are possible; found {count}")
+    return [float(f"{value:.15g}") for value in np.linspace(start, end, number)]
+
+
+def _items(text: str) -> Iterator[str]:
+    """Parts of a text between commas that stand in no bracket and no quotes."""
+    depth, quote, item = 0, "", ""
+    for letter in text:
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in _QUOTES:
+            quote = letter
+        depth += (letter in _OPENING) - (letter in _CLOSING) if not quote else 0
+        if letter == "," and not depth and not quote:
+            yield item
+            item = ""
+        else:
+            item += letter
+    yield item
+
+
+def located_in(axis: Axis, error: ProblemError) -> ProblemError:
+    """The error of a value of an axis, with the key where the error has no place."""
+    return error if any(issue.path for issue in error.issues) else ProblemError(f"{axis.name}: {error}")

@@ -1,0 +1,101 @@
+"""The journal of a study: one line for each member that is done, so that a run that was killed can go on."""
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import IO, Any
+
+from bemcontact.errors import ProblemError
+from bemcontact.serialization import json_text
+from bemcontact.studies.rows import MemberRow
+
+JOURNAL = "members.jsonl"
+"""Name of the journal in the folder of a study."""
+FIRST = "bemcontact study"
+"""What the first line of a journal says."""
+_HEAD = f"{json_text({'journal': FIRST}, None)}\n".encode()
+
+
+def is_journal(path: Path) -> bool:
+    """Whether a file is the journal of a study, even one whose first line was not written to its end."""
+    try:
+        with path.open("rb") as file:
+            first = file.readline(1000)
+    except OSError:
+        return False
+    return first == _HEAD or (not first.endswith(b"\n") and _HEAD.startswith(first))
+
+
+def recorded(path: Path) -> dict[str, Mapping[str, Any]]:
+    """Rows in a journal by the key of the member; lines that were not written to their end are left out."""
+    rows = dict[str, Mapping[str, Any]]()
+    if not path.is_file():
+        return rows
+    with path.open("rb") as file:
+        for line in file:
+            try:
+                entry = json.loads(line) if line.endswith(b"\n") else None
+            except ValueError:
+                continue
+            if isinstance(entry, dict) and isinstance(entry.get("row"), dict):
+                rows[entry["key"]] = entry["row"]
+    return rows
+
+
+class Journal:
+    """A journal that is open for further rows."""
+
+    def __init__(self, file: IO[bytes]) -> None:
+        self._file = file
+
+    def add(self, key: str, row: MemberRow) -> None:
+        """Write the row of a member, down to the disk."""
+        self._write({"key": key, "row": row.to_dict()})
+
+    def _write(self, entry: dict[str, Any]) -> None:
+        """Write one line."""
+        self._file.write(f"{json_text(entry, None)}\n".encode())
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+
+@contextmanager
+def opened(folder: Path) -> Iterator[Journal]:
+    """Open the journal in a folder, which is made; `ProblemError` if another run writes to it."""
+    folder.mkdir(exist_ok=True)
+    path = folder / JOURNAL
+    with path.open("ab") as file:
+        _lock(file, folder)
+        journal = Journal(file)
+        if path.stat().st_size == 0:
+            file.write(_HEAD)
+            file.flush()
+        elif not _ends_with_line(path):
+            file.write(b"\n")
+        yield journal
+
+
+def _ends_with_line(path: Path) -> bool:
+    """Whether the last line of a file was written to its end."""
+    with path.open("rb") as file:
+        file.seek(-1, os.SEEK_END)
+        return file.read(1) == b"\n"
+
+
+def _lock(file: IO[bytes], folder: Path) -> None:
+    """Refuse a journal that another run has open; the system unlocks it when that run ends, however it ends."""
+    if not find_spec("fcntl"):  # Windows does without
+        return
+    fcntl = import_module("fcntl")
+    try:
+        fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise ProblemError(
+            f"another run writes a study to {folder}; wait for its end, or name another folder"
+        ) from None
+    except OSError:  # a file system without locks
+        return

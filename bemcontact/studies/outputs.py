@@ -1,0 +1,159 @@
+"""Outputs of a study: numbers of a result by name, each with its error."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+import numpy as np
+
+from bemcontact.analysis.result import Result
+from bemcontact.assessment.accuracy import ErrorBar
+from bemcontact.checks.arguments import texts
+from bemcontact.errors import OptionError
+from bemcontact.problem.problem import Problem
+from bemcontact.problem.wording import unknown_word
+from bemcontact.serialization import Leaf
+
+WHOLE = ("peak", "peak_x", "peak_y", "resultant_x", "resultant_y", "moment", "displacement")
+"""Outputs of the whole body."""
+OF_ZONES = ("force", "force_x", "force_y", "intervals", "start", "end", "length", "intensity")
+"""Outputs of each contact zone, as ``force.foot``; those of a second interval are ``end.foot[1]``."""
+OF_MOVERS = ("motion", "rotation")
+"""Outputs of each tool and free motion, as ``motion.press``."""
+ALL_OF = {"resultant": ("resultant_x", "resultant_y")}
+"""Name for several outputs -> these."""
+LENGTH, PRESSURE, LINE_FORCE, LINE_MOMENT, NUMBER = "length", "stress", "line_force", "line_moment", ""
+DIMENSIONS = {
+    "peak": PRESSURE, "peak_x": LENGTH, "peak_y": LENGTH, "resultant_x": LINE_FORCE, "resultant_y": LINE_FORCE,
+    "moment": LINE_MOMENT, "displacement": LENGTH, "force": LINE_FORCE, "force_x": LINE_FORCE, "force_y": LINE_FORCE,
+    "intervals": NUMBER, "start": LENGTH, "end": LENGTH, "length": LENGTH, "intensity": NUMBER, "motion": LENGTH,
+    "rotation": NUMBER,
+}  # fmt: skip
+"""Output -> attribute of the units that has its label; nothing for numbers, and for intensities [p L^α]."""
+USUAL = ("peak", "resultant", "length", "displacement")
+"""Outputs that are shown unless others are chosen."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reading(Leaf):
+    """A number of a result with its error."""
+
+    value: float | None
+    """Value in the units of the problem; null if there is none, as of an infinite peak."""
+    error: float | None = None
+    """Estimated error in the unit of the value; null if it is not known."""
+
+
+def readings(result: Result) -> dict[str, Reading]:
+    """All outputs of a result, by name."""
+    found = dict([*_of_whole(result), *_of_zones(result), *_of_intervals(result), *_of_bars(result)])
+    return {name: Reading(value=_finite(item.value), error=_finite(item.error)) for name, item in found.items()}
+
+
+def _finite(number: float | None) -> float | None:
+    """A number, or None for one that is not finite."""
+    return number if number is not None and isfinite(number) else None
+
+
+def _of_whole(result: Result) -> Iterator[tuple[str, Reading]]:
+    """Peak, resultant and largest displacement."""
+    where, accuracy = result.footprint, result.accuracy
+    if (peak := where.peak) is not None:
+        yield "peak", _reading(peak.pressure, accuracy.peak_bar())
+        yield "peak_x", Reading(value=peak.at[0])
+        yield "peak_y", Reading(value=peak.at[1])
+    else:
+        yield "peak", Reading(value=None)
+    bars = [bar for bar in accuracy.bars if bar.quantity == "force" and bar.value]
+    known = [abs(bar.value or 0.0) * bar.bar for bar in bars if bar.bar is not None]
+    error = sum(known) if known and len(known) == len(bars) else None
+    for axis, value in zip("xy", where.resultant.force, strict=True):
+        yield f"resultant_{axis}", Reading(value=float(value), error=error)
+    yield "moment", Reading(value=float(where.resultant.moment))
+
+
+def _of_zones(result: Result) -> Iterator[tuple[str, Reading]]:
+    """Forces of each zone, and its number of contact intervals."""
+    bars = {bar.zone: bar for bar in result.accuracy.bars if bar.quantity == "force"}
+    sums = result.contact.weights_by_zone @ np.abs(result.solution.pressure)
+    for zone, total in zip(result.contact.zone_names, sums.tolist(), strict=True):
+        count = sum(item.zone == zone for item in result.footprint.intervals)
+        total = total if count else 0.0
+        error = None if zone not in bars else _reading(total, bars[zone].bar).error
+        yield f"force.{zone}", Reading(value=total, error=error)
+        for axis, value in zip("xy", result.footprint.forces[zone], strict=True):
+            yield f"force_{axis}.{zone}", Reading(value=float(value), error=error)
+        yield f"intervals.{zone}", Reading(value=float(count))
+
+
+def _of_intervals(result: Result) -> Iterator[tuple[str, Reading]]:
+    """Start, end and length of each contact interval, by arc position on its run."""
+    bars = {(bar.quantity, bar.zone, bar.interval): bar for bar in result.accuracy.bars}
+    count = dict[str, int]()
+    for item in result.footprint.intervals:
+        number = count.get(item.zone, 0)
+        count[item.zone] = number + 1
+        name = f"{item.zone}[{number}]" if number else item.zone
+        for quantity, value in (("start", item.start_arc), ("end", item.end_arc), ("length", item.length)):
+            bar = bars.get((quantity, item.zone, number))
+            error = None if bar is None or bar.bar is None else bar.bar * item.length
+            yield f"{quantity}.{name}", Reading(value=float(value), error=error)
+
+
+def _of_bars(result: Result) -> Iterator[tuple[str, Reading]]:
+    """What has a value together with its error bar only."""
+    for bar in result.accuracy.bars:
+        if bar.quantity == "displacement":
+            yield "displacement", _of_bar(bar)
+        elif bar.quantity in (*OF_MOVERS, "intensity") and bar.value is not None:
+            yield f"{bar.quantity}.{bar.mover or bar.zone}", _of_bar(bar)
+
+
+def _of_bar(bar: ErrorBar) -> Reading:
+    """Value and error of an error bar."""
+    return Reading(value=None) if bar.value is None else _reading(bar.value, bar.bar)
+
+
+def _reading(value: float, bar: float | None) -> Reading:
+    """A number with a relative error bar."""
+    return Reading(value=float(value), error=None if bar is None else float(bar * abs(value)))
+
+
+def chosen(outputs: Sequence[str] | None, problem: Problem) -> tuple[str, ...]:
+    """Check names of outputs, such as ``peak``, ``force`` of all zones or ``force.foot``; the usual ones if None.
+
+    `OptionError` for an unknown output, zone or mover.
+    """
+    names = USUAL if outputs is None else texts(outputs, "outputs")
+    if not names:
+        raise OptionError(f"no output is named; there are: {', '.join(_known())}")
+    for name in names:
+        quantity, point, owner = name.partition(".")
+        if quantity not in _known() or (point and quantity not in (*OF_ZONES, *OF_MOVERS)):
+            raise OptionError(unknown_word("output", name, _known()))
+        if point and quantity in OF_ZONES and owner.split("[")[0] not in problem.contact_zones:
+            raise OptionError(f"output {name}: {unknown_word('contact zone', owner, problem.contact_zones)}")
+    return tuple(dict.fromkeys(part for name in names for part in ALL_OF.get(name, (name,))))
+
+
+def _known() -> tuple[str, ...]:
+    """All names of outputs without their owners."""
+    return (*ALL_OF, *WHOLE, *OF_ZONES, *OF_MOVERS)
+
+
+def columns_of(outputs: Sequence[str], present: Sequence[str]) -> tuple[str, ...]:
+    """Columns of a table: each output, or those of all zones and movers that rows have, in the order of the outputs.
+
+    An output that no row has keeps its own name.
+    """
+    columns = list[str]()
+    for name in outputs:
+        own = [item for item in present if item == name or _owned(item, name)]
+        columns += own or [name]
+    return tuple(dict.fromkeys(columns))
+
+
+def _owned(column: str, output: str) -> bool:
+    """Whether a column is an output of a zone or mover, or of a further interval."""
+    quantity, _, _ = column.partition(".")
+    return quantity == output or ("." in output and column.startswith(f"{output}["))

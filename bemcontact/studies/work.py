@@ -1,0 +1,132 @@
+"""What a worker does: solve some members of a study, condensed together where their matrix is the same."""
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+from threadpoolctl import threadpool_limits
+
+from bemcontact.adaptivity.mesh_search import cut
+from bemcontact.analysis.solve import solve_with
+from bemcontact.bem.body import Body, body_of
+from bemcontact.bem.condense import Condensation, CondensedTogether, Condenser, condense_together, matrix_of
+from bemcontact.errors import BemContactError, ProblemError
+from bemcontact.options import SolveOptions
+from bemcontact.problem.problem import Problem
+from bemcontact.studies.plan import StudyPlan
+from bemcontact.studies.rows import MemberRow, failed_row, row_of
+
+THREADS = "OMP_NUM_THREADS"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """Members that one worker solves together.
+
+    Parameters
+    ----------
+    group : numbers of all members that may be condensed together
+    wanted : those of them that are to be solved; the others are condensed too, so that round-off is the same each time
+    """
+
+    group: tuple[int, ...]
+    wanted: tuple[int, ...]
+
+
+def tasks_of(plan: StudyPlan, done: Sequence[bool]) -> Iterator[Task]:
+    """The tasks of a study; members that are done are not wanted."""
+    for group in plan.groups():
+        wanted = tuple(number for number in group if not done[number])
+        if wanted:
+            yield Task(group=tuple(group), wanted=wanted)
+
+
+def rows_of_task(plan: StudyPlan, task: Task) -> Iterator[MemberRow]:
+    """Solve the wanted members of a task; a member that fails is a row with its sentence."""
+    members = {number: _member(plan, number) for number in task.group}
+    shared = _SharedMatrices({i: item for i, item in members.items() if isinstance(item, Problem)})
+    for number in task.wanted:
+        values, member = plan.values(number), members[number]
+        if not isinstance(member, Problem):
+            yield failed_row(number, values, str(member))
+            continue
+        try:
+            yield row_of(number, values, solve_with(SolveOptions(), member, condenser=shared.condenser(number)))
+        except MemoryError:
+            yield failed_row(number, values, "there is not enough memory; take fewer elements or fewer workers")
+        except BemContactError as error:
+            yield failed_row(number, values, str(error))
+        except Exception as error:  # one member must not end the study
+            yield failed_row(number, values, f"an error of the program, please report it: {error!r}")
+
+
+def _member(plan: StudyPlan, number: int) -> Problem | ProblemError:
+    """The problem of a member, or why its values do not go together."""
+    try:
+        return plan.member(number)
+    except ProblemError as error:
+        return error
+
+
+@dataclass(frozen=True, eq=False)
+class _SharedMatrices:
+    """Members of a group by number; those whose matrix is the same are condensed together when one is needed."""
+
+    members: dict[int, Problem]
+    _found: dict[int, dict[int, tuple[CondensedTogether, int] | BemContactError]] = field(default_factory=dict)
+
+    def condenser(self, number: int) -> Condenser:
+        """Condense a member on its stated mesh, or on that with its elements cut."""
+
+        def condense(problem: Problem) -> Condensation:
+            refine = problem.mesh.refine
+            if refine not in self._found:
+                self._found[refine] = dict(self._together(refine))
+            found = self._found[refine][number]
+            if isinstance(found, BemContactError):
+                raise found
+            together, place = found
+            return together[place]
+
+        return condense
+
+    def _together(self, refine: int) -> Iterator[tuple[int, tuple[CondensedTogether, int] | BemContactError]]:
+        """Condense all members with their elements cut into so many parts; or the error of each."""
+        alike = dict[object, list[tuple[int, Body]]]()
+        for number, member in self.members.items():
+            try:
+                body = body_of(cut(member.without_joints(), refine))
+            except BemContactError as error:
+                yield number, error
+                continue
+            alike.setdefault(matrix_of(body), []).append((number, body))
+        for pairs in alike.values():
+            numbers, bodies = zip(*pairs, strict=True)
+            try:
+                together = condense_together(bodies)
+            except BemContactError as error:
+                yield from ((number, error) for number in numbers)
+                continue
+            yield from ((number, (together, place)) for place, number in enumerate(numbers))
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Let assembly and linear algebra use one thread, for the workers share the processors."""
+    before = os.environ.get(THREADS)
+    os.environ[THREADS] = "1"
+    try:
+        with threadpool_limits(limits=1):
+            yield
+    finally:
+        if before is None:
+            del os.environ[THREADS]
+        else:
+            os.environ[THREADS] = before
+
+
+def rows_on_one_thread(plan: StudyPlan, task: Task) -> list[MemberRow]:
+    """Solve a task in a worker process."""
+    with one_thread():
+        return [*rows_of_task(plan, task)]

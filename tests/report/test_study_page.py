@@ -1,0 +1,72 @@
+"""The page and the summary of a study: rows that do not hold are seen, and numbers are those of the table."""
+
+from io import StringIO
+
+import pytest
+from page_reader import read
+from rich.console import Console
+
+from bemcontact.problem.units import Units
+from bemcontact.report.study_page import render, rows_in_short, study_shortfall, study_summary, study_verdicts
+from bemcontact.studies.axes import axes_of
+from bemcontact.studies.outputs import Reading
+from bemcontact.studies.rows import MemberRow, MemberStatus, failed_row
+from bemcontact.studies.table import StudyTable
+
+
+def row(number: int, status: MemberStatus, peak: float | None, message: str = "") -> MemberRow:
+    certified = status is not MemberStatus.NOT_CERTIFIED
+    return MemberRow(
+        number=number, values={"a.b": float(number)}, status=status, equations="", certified=certified,
+        met=status is MemberStatus.HOLDS, mesh_error=0.002, message=message,
+        outputs={"peak": Reading(value=peak, error=None if peak is None else 0.01 * peak)},
+    )  # fmt: skip
+
+
+def study(*rows: MemberRow) -> StudyTable:
+    return StudyTable(
+        name="<b>study</b>", units=Units(length="mm", force="N"), axes=axes_of({"a.b": [0.0, 1.0]}),
+        outputs=("peak",), rows=rows,
+    )  # fmt: skip
+
+
+GOOD = row(0, MemberStatus.HOLDS, 100.0)
+UNMET = row(1, MemberStatus.NOT_MET, 900.0, "the largest error is 30 %")
+OPEN = row(1, MemberStatus.NOT_CERTIFIED, 900.0, "a residual is too large")
+
+
+@pytest.mark.parametrize(
+    ("second", "quality", "words"),
+    [
+        (row(1, MemberStatus.HOLDS, 200.0), ("good", "good"), "all proved"),
+        (UNMET, ("good", "fair"), "not met by 1 of 2"),
+        (OPEN, ("bad", "fair"), "1 of 2 not proved"),
+        (failed_row(1, {"a.b": 1.0}, "there is no contact"), ("bad", "good"), "is no contact"),
+    ],
+)
+def test_one_member_that_does_not_hold_changes_the_verdict(second: MemberRow, quality: tuple[str, str], words: str):
+    both = study(GOOD, second)
+    verdicts = study_verdicts(both)
+    assert tuple(item.quality for item in verdicts) == quality
+    assert words in " ".join(f"{item.word} {item.words}" for item in verdicts)
+    assert (study_shortfall(both) == "") is (quality == ("good", "good"))
+    page = read(render(both, {}, None)).text
+    assert words in page
+    assert str(second.status) in page
+
+
+def test_numbers_that_do_not_hold_are_in_no_range():
+    """The summary has the smallest and largest value of members that hold; the page shows all with their status."""
+    for second in (UNMET, OPEN):
+        console = Console(width=100, record=True, file=StringIO())
+        console.print(study_summary(study(GOOD, second), 1.0))
+        assert "900" not in console.export_text()
+
+
+def test_the_page_has_each_number_with_its_error_and_no_markup_of_the_user():
+    page = render(study(GOOD, UNMET), {"peak over a.b": b"<svg/>"}, "name: x")
+    text = read(page).text
+    assert "100 ± 1" in text
+    assert "peak [N/mm²]" in text
+    assert "<b>study</b>" not in page
+    assert "<b>" not in rows_in_short(study(GOOD))

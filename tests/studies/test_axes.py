@@ -1,0 +1,79 @@
+"""Axes of a study: how they are written, and what is refused."""
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bemcontact.errors import ProblemError
+from bemcontact.studies.axes import axes_of, written_axes, written_axis
+
+
+@pytest.mark.parametrize(
+    ("text", "keys", "values"),
+    [
+        ("a.b=1:2:3", "a.b", [1.0, 1.5, 2.0]),
+        ("a=0:0.3:4", "a", [0.0, 0.1, 0.2, 0.3]),  # the decimals that a person expects
+        ("a=3,1e2,-4", "a", [3, 100.0, -4]),
+        ("a=[1, 2],[3, 4]", "a", [[1, 2], [3, 4]]),
+        ("a={x: 1, y: 2},{x: 3}", "a", [{"x": 1, "y": 2}, {"x": 3}]),
+        ("a='x, y',z", "a", ["x, y", "z"]),
+        ("variant=paper,stated mesh", "variant", ["paper", "stated mesh"]),
+        ("case=1:2:3", "case", ["1:2:3"]),  # a name may have colons
+        ("a.x,b.y=1,2", "a.x,b.y", [1, 2]),
+    ],
+)
+def test_written_axes_are_read(text: str, keys: str, values: list[Any]):
+    assert written_axis(text) == (keys, values)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("a", "no '='"),
+        ("a=1:2", "expected a:b:n"),
+        ("a=1:2:x", "two numbers and how many"),
+        ("a=1:2:1", "at least 2"),
+        ("a=1:1:4", "two different"),
+        ("a=1:inf:4", "finite"),
+        ("a=[1", "bracket"),
+    ],
+)
+def test_badly_written_axes_are_refused(text: str, says: str):
+    with pytest.raises(ProblemError, match=re.escape(says)):
+        written_axis(text)
+
+
+def test_a_key_given_twice_is_refused():
+    with pytest.raises(ProblemError, match="a is given twice"):
+        written_axes(["a=1,2", "a=3,4"])
+
+
+def test_arrays_and_tuples_become_lists_of_numbers():
+    (axis,) = axes_of({("a", "b"): np.array([1.0, 2.0])})
+    assert (axis.keys, axis.values, axis.name) == (("a", "b"), (1.0, 2.0), "a,b")
+    assert axes_of({"a": [(1, 2), (3, 4)]})[0].values == ([1, 2], [3, 4])
+
+
+@pytest.mark.parametrize(
+    ("vary", "says"),
+    [
+        ({}, "nothing to vary"),
+        ([], "vary must be a Mapping"),
+        ({"a": []}, "no values"),
+        ({"a": "12"}, "a list of values"),
+        ({"a": 3.0}, "a list of values"),
+        ({"a": [1, 1.0]}, "occurs twice"),
+        ({"a": [float("nan")]}, "can be varied"),
+        ({"a": [object()]}, "can be varied"),
+        ({"a,a": [1]}, "varied twice"),
+        ({"a": [1], "b,a": [1]}, "varied twice"),
+        ({"variant": [1]}, "a name is needed"),
+        ({"variant,a": ["x"]}, "varied alone"),
+        ({"a": range(2000), "b": range(2000)}, "4000000 members"),
+    ],
+)
+def test_axes_that_make_no_study_are_refused(vary: Any, says: str):
+    with pytest.raises(ProblemError, match=re.escape(says)):
+        axes_of(vary)

@@ -1,0 +1,77 @@
+"""A Dask cluster on this machine: the same rows, also after one of its workers is killed."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+import bemcontact
+from bemcontact.errors import ProblemError
+from bemcontact.studies import cluster
+from bemcontact.studies.cluster import rows_by_dask
+from bemcontact.studies.plan import study_plan
+from bemcontact.studies.rows import MemberRow
+from bemcontact.studies.work import tasks_of
+from bemcontact.studies.workers import rows_here
+
+MODELS = Path(__file__).parents[2] / "models"
+CYLINDER = bemcontact.load(MODELS / "cylinder_on_plane.yaml", variant="paper").with_value("accuracy", 0.01)
+VARIED = {"conditions.top.pressure": [10, 20, 30], "material.young_modulus": [900, 1000, 1100, 1200]}
+PLAN = study_plan(CYLINDER, VARIED)
+
+
+@contextmanager
+def two_workers(folder: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """A scheduler and two worker processes: its address, and the workers."""
+    root = str(Path(bemcontact.__file__).parents[1])
+    environment = {**os.environ, "PYTHONPATH": root, "OMP_NUM_THREADS": "1"}
+    run = [sys.executable, "-m", "distributed.cli.dask_scheduler"]
+    file = folder / "scheduler.json"
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment, "cwd": folder}
+    scheduler = ["--scheduler-file", str(file)]
+    started = [subprocess.Popen([*run, *scheduler, "--port", "0", "--no-dashboard", "--host", "127.0.0.1"], **quiet)]
+    worker = [sys.executable, "-m", "distributed.cli.dask_worker", *scheduler, "--nthreads", "1", "--no-nanny"]
+    try:
+        deadline = time.monotonic() + 60
+        while not file.is_file() and time.monotonic() < deadline:
+            time.sleep(0.1)
+        workers = [subprocess.Popen([*worker, "--no-dashboard", "--name", name], **quiet) for name in ("a", "b")]
+        started += workers
+        yield json.loads(file.read_text(encoding="utf-8"))["address"], workers
+    finally:
+        for process in reversed(started):
+            process.kill()
+            process.wait()
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+def test_a_cluster_finds_the_same_rows_though_a_worker_is_killed(tmp_path: Path):
+    expected = sorted(rows_here(PLAN, tasks_of(PLAN, [False] * len(PLAN))), key=lambda row: row.number)
+    rows = list[MemberRow]()
+    with two_workers(tmp_path) as (address, workers):
+        for row in rows_by_dask(PLAN, tasks_of(PLAN, [False] * len(PLAN)), address):
+            rows.append(row)
+            if len(rows) == 3:
+                workers[0].send_signal(signal.SIGKILL)
+    assert sorted(rows, key=lambda row: row.number) == expected
+
+
+@pytest.mark.filterwarnings("default")
+def test_a_scheduler_that_does_not_answer_is_an_error(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(cluster, "PATIENCE", 1)
+    with pytest.raises(ProblemError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
+        next(rows_by_dask(PLAN, iter(()), "tcp://127.0.0.1:9"))
+
+
+def test_without_dask_the_extra_is_named(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(cluster, "find_spec", lambda _: None)
+    with pytest.raises(ProblemError, match=r"pip install 'bemcontact\[dask\]'"):
+        next(rows_by_dask(PLAN, iter(()), "tcp://127.0.0.1:9"))

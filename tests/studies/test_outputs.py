@@ -1,0 +1,83 @@
+"""Outputs of a study: names, values and errors are those of the result."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import bemcontact
+from bemcontact.errors import ProblemError
+from bemcontact.studies.outputs import ALL_OF, OF_MOVERS, OF_ZONES, WHOLE, chosen, columns_of, readings
+
+MODELS = Path(__file__).parents[2] / "models"
+ZONES = bemcontact.load(MODELS / "gallery" / "three_zones.yaml")
+TOOLS = bemcontact.load(MODELS / "gallery" / "body_between_two_tools.yaml").with_case("raised")
+PUNCH = bemcontact.load(MODELS / "gallery" / "flat_punch.yaml")
+
+
+def test_values_and_errors_are_those_of_the_error_bars():
+    """Errors are absolute; of a start or an end relative to the length of its interval before."""
+    result = bemcontact.solve(ZONES)
+    found = readings(result)
+    for bar in result.accuracy.bars:
+        if bar.quantity in ("pressure", "peak"):
+            continue
+        name = f"{bar.quantity}.{bar.zone or bar.mover}" if bar.zone or bar.mover else bar.quantity
+        name += f"[{bar.interval}]" if bar.interval else ""
+        reading = found[name]
+        assert reading.value == pytest.approx(bar.value, rel=1e-6, abs=1e-12)
+        length = found[name.replace(bar.quantity, "length", 1)].value if bar.quantity in ("start", "end") else bar.value
+        assert bar.bar is None or reading.error == pytest.approx(bar.bar * abs(length or 0.0), rel=1e-6)
+    peak = result.footprint.peak
+    assert peak is not None
+    assert found["peak"].value == peak.pressure
+    assert found["peak"].error == pytest.approx((result.accuracy.peak_bar() or 0.0) * peak.pressure)
+    assert (found["resultant_x"].value, found["resultant_y"].value) == result.footprint.resultant.force
+    for zone, force in result.footprint.forces.items():
+        assert (found[f"force_x.{zone}"].value, found[f"force_y.{zone}"].value) == pytest.approx(force)
+    assert sum(found[f"force_y.{zone}"].value or 0.0 for zone in ZONES.contact_zones) == pytest.approx(
+        result.footprint.resultant.force[1]
+    )
+
+
+def test_an_infinite_peak_is_no_number():
+    result = bemcontact.solve(PUNCH)
+    assert result.accuracy.infinite
+    found = readings(result)
+    assert found["peak"].value is None
+    zone = result.accuracy.infinite[0]
+    assert found[f"intensity.{zone}"].value == result.accuracy.bar_of("intensity", zone).value
+
+
+def test_motions_of_tools_are_outputs():
+    found = readings(bemcontact.solve(TOOLS))
+    assert any(name.startswith("motion.") and item.error is not None for name, item in found.items())
+
+
+def test_each_output_of_a_result_can_be_chosen():
+    for problem in (ZONES, TOOLS, PUNCH):
+        for name in readings(bemcontact.solve(problem)):
+            assert chosen([name], problem) == (name,)
+    for name in (*WHOLE, *OF_ZONES, *OF_MOVERS, *ALL_OF):
+        assert chosen([name], ZONES)
+
+
+@pytest.mark.parametrize(
+    ("outputs", "says"),
+    [
+        (["peek"], "unknown output 'peek'; did you mean 'peak'?"),
+        (["peak.foot"], "unknown output 'peak.foot'"),
+        (["force.leftt"], "unknown contact zone 'leftt'"),
+        ([], "no output is named"),
+        ("peak", "list of texts"),
+    ],
+)
+def test_unknown_outputs_are_refused(outputs: list[str], says: str):
+    with pytest.raises(ProblemError, match=re.escape(says)):
+        chosen(outputs, ZONES)
+
+
+def test_columns_are_those_of_all_zones_and_intervals_that_some_row_has():
+    present = ["peak", "length.a", "length.b", "length.a[1]", "lengthy.a", "motion.tool"]
+    assert columns_of(["length", "peak"], present) == ("length.a", "length.b", "length.a[1]", "peak")
+    assert columns_of(["length.a", "rotation"], present) == ("length.a", "length.a[1]", "rotation")

@@ -1,0 +1,36 @@
+"""Rows of a study: what is said of a member, and that nothing is lost in JSON."""
+
+import json
+from pathlib import Path
+
+import bemcontact
+from bemcontact.studies.rows import MemberStatus, row_from, row_of
+
+MODELS = Path(__file__).parents[2] / "models"
+CYLINDER = bemcontact.load(MODELS / "cylinder_on_plane.yaml", variant="paper")
+
+
+def test_a_row_is_the_same_after_json():
+    row = row_of(3, {"a": [1.5, "x"], "b": None}, bemcontact.solve(CYLINDER.with_value("accuracy", 0.01)))
+    assert row_from(json.loads(row.to_json()), 3, row.values) == row
+
+
+def test_a_result_that_is_not_certified_says_so():
+    """A local solver that is stopped early has numbers that nobody may take for right."""
+    result = bemcontact.solve(CYLINDER, "qp2", max_iterations=3, polish=False)
+    assert not result.certified
+    row = row_of(0, {}, result)
+    assert (row.status, row.holds, row.certified) == (MemberStatus.NOT_CERTIFIED, False, False)
+    assert row.message == " ".join(result.words.split())
+
+
+def test_a_row_says_why_it_has_no_peak():
+    """Below a flat punch the pressure is infinite at both edges; it is proved all the same."""
+    row = row_of(0, {}, bemcontact.solve(bemcontact.load(MODELS / "gallery" / "flat_punch.yaml")))
+    assert (row.holds, row.outputs["peak"].value) == (True, None)
+    assert row.message == "the peak pressure is infinite in punch"
+
+
+def test_a_mesh_that_is_not_assessed_neither_holds_nor_fails():
+    row = row_of(0, {}, bemcontact.solve(CYLINDER))
+    assert (row.status, row.holds, row.met, row.mesh_error) == (MemberStatus.NOT_ASSESSED, None, None, None)

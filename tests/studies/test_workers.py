@@ -1,0 +1,70 @@
+"""Several processes: the same rows, also after one of them is killed."""
+
+import os
+import signal
+import threading
+import time
+from concurrent.futures.process import ProcessPoolExecutor
+from pathlib import Path
+
+import pytest
+
+import bemcontact
+from bemcontact.studies import workers
+from bemcontact.studies.plan import StudyPlan, study_plan
+from bemcontact.studies.rows import MemberRow
+from bemcontact.studies.work import tasks_of
+from bemcontact.studies.workers import rows_by_processes, rows_here
+
+CYLINDER = bemcontact.load(Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml", variant="paper").with_value(
+    "accuracy", 0.01
+)
+PLAN = study_plan(
+    CYLINDER, {"conditions.top.pressure": [10, 20, 30], "material.young_modulus": [900, 1000, 1100, 1200]}
+)
+
+
+def sorted_by_number(rows: workers.Rows) -> list[MemberRow]:
+    return sorted(rows, key=lambda row: row.number)
+
+
+def here(plan: StudyPlan) -> list[MemberRow]:
+    return sorted_by_number(rows_here(plan, tasks_of(plan, [False] * len(plan))))
+
+
+@pytest.mark.slow
+def test_two_processes_find_the_same_rows_though_one_is_killed(monkeypatch: pytest.MonkeyPatch):
+    pools = list[ProcessPoolExecutor]()
+
+    original = workers.ProcessPoolExecutor
+
+    def watched(*arguments: object, **options: object) -> ProcessPoolExecutor:
+        pools.append(original(*arguments, **options))  # pyright: ignore
+        return pools[-1]
+
+    monkeypatch.setattr(workers, "ProcessPoolExecutor", watched)
+    rows = list[MemberRow]()
+    for row in rows_by_processes(PLAN, tasks_of(PLAN, [False] * len(PLAN)), 2):
+        rows.append(row)
+        if len(rows) == 3:
+            os.kill(next(iter(pools[0]._processes)), signal.SIGKILL)
+    assert sorted(rows, key=lambda item: item.number) == here(PLAN)
+    assert len(pools) > 1
+
+
+@pytest.mark.slow
+def test_processes_end_when_nobody_wants_more_rows():
+    before = set(threading.enumerate())
+    found = rows_by_processes(PLAN, tasks_of(PLAN, [False] * len(PLAN)), 2)
+    next(found)
+    began = time.perf_counter()
+    found.close()
+    assert time.perf_counter() - began < 20
+    assert not {thread for thread in set(threading.enumerate()) - before if thread.name.startswith("ExecutorManager")}
+
+
+def test_the_number_of_threads_is_as_before_afterwards(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    plan = study_plan(CYLINDER.with_value("accuracy", None), {"conditions.top.pressure": [10]})
+    assert len(here(plan)) == 1
+    assert os.environ["OMP_NUM_THREADS"] == "7"
