@@ -68,6 +68,10 @@ class CoarseMesh:
             case "start" | "end":
                 run, size, scale = self._interval(item)
                 away = min(away, abs(run.length - away)) if run.closed else away
+            case "force":
+                number = [*self.own.body.problem.contact_zones].index(str(item.zone))
+                one, two = (answer.force_vector(number) for answer in self.pair)
+                away = max(away, float(np.linalg.norm(two - one)))
             case "pressure":
                 away, size, scale = self._pressures(str(item.zone))
             case "motion" | "rotation":

@@ -265,7 +265,8 @@ def _zone_bars(
         bar = estimate.bar(max(_change(*peaks), PEAK * m), smooth=True) + logarithmic_rise(estimate.difference, name)
         yield ErrorBar(quantity="peak", zone=name, value=estimate.value(*peaks), bar=bar)
     forces = [solved.force(answer, number) for solved, answer in both]
-    bar = estimate.bar(max(_change(*forces), FORCE * m, hidden))
+    turned = float(np.linalg.norm(both[1][1].force_vector(number) - both[0][1].force_vector(number))) / forces[1]
+    bar = estimate.bar(max(_change(*forces), turned, FORCE * m, hidden))
     yield ErrorBar(quantity="force", zone=name, value=estimate.value(*forces), bar=bar)
     yield from _end_bars(estimate, name, m)
     solved, answer = estimate.reported

@@ -78,6 +78,11 @@ class CaseAnswer:
         """Largest magnitude of `displacement` [L]."""
         return float(np.hypot(*np.moveaxis(self.displacement, 2, 0)).max())
 
+    def force_vector(self, zone: int) -> Array:
+        """Force (2,) of the surface of a zone on the body [p L]."""
+        contact = self.condensation.contact
+        return (contact.weights_by_zone[zone] * self.solution.pressure) @ contact.normals
+
     def force_influence(self) -> Iterator[tuple[Array, Array]]:
         """Per zone, the boundary's change (displacement, traction) if the points in contact move out by 1 [L].
 

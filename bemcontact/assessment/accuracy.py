@@ -156,8 +156,7 @@ class Accuracy(Leaf):
     def peak_bar(self, zone: str | None = None) -> float | None:
         """Estimated error of the largest finite peak pressure, or of that of a zone, relative; None if not known."""
         peaks = [item for item in self.bars if item.quantity == "peak" and zone in (None, item.zone)]
-        finite = [(item.value, item.bar) for item in peaks if item.value is not None]
-        return max(finite, key=lambda item: item[0], default=(0.0, None))[1]
+        return bar_of_largest([(item.value, item.bar) for item in peaks if item.value is not None])
 
     def knowing(self, *others: Self) -> Self:
         """Return the same, with the infinite peaks that were recognized on others of the same problem."""
@@ -165,6 +164,15 @@ class Accuracy(Leaf):
         kept = [item for item in self.bars if item.quantity != "peak" or item.zone not in known]
         now = replace(self, bars=(*known.values(), *kept))
         return now if self.met is None else replace(now, met=self.asked is not None and now.worst <= self.asked)
+
+
+def bar_of_largest(peaks: Sequence[tuple[float, float | None]]) -> float | None:
+    """Relative error of the largest of some values with errors: another one may be larger than it seems."""
+    if not peaks or any(bar is None for _, bar in peaks):
+        return None
+    value, own = max(peaks, key=lambda item: item[0])
+    most = max(each * (1 + (bar or 0.0)) for each, bar in peaks)
+    return max(own or 0.0, most / value - 1) if value else own
 
 
 def together(judged: Iterable[bool | None]) -> bool | None:

@@ -1,5 +1,7 @@
 """What JSON holds of a contact problem and of a solution, point by point."""
 
+import numpy as np
+
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, LocalSearch, Status, Trace
 from bemcontact.serialization import Pair, Pairs, Record, Vector
@@ -90,6 +92,8 @@ class ToolRecord(Record):
     """Moment of that force about the point, counterclockwise, per thickness [p L²]."""
     free: tuple[bool, bool, bool]
     """Whether the tool is free to move along x, along y and to rotate, as it is loaded there."""
+    zones: tuple[str, ...]
+    """Names of the zones whose surfaces it moves."""
 
 
 class SolutionRecord(Record):
@@ -160,9 +164,11 @@ def _tool_records(contact: CondensedContact, solution: ContactSolution) -> list[
             force_of_body=(fx, fy),
             moment_of_body=moment,
             free=(free[0], free[1], free[2]),
+            zones=tuple(contact.zone_names[i] for i in np.unique(contact.zone[moved.any(axis=1)])),
         )
-        for name, point, (x, y, rotation), (fx, fy, moment), free in zip(
+        for name, moved, point, (x, y, rotation), (fx, fy, moment), free in zip(
             tools.names,
+            np.split(tools.motions, len(tools.names), axis=1) if tools.names else (),
             tools.point.tolist(),
             tools.displacement(solution.rigid_amplitudes).tolist(),
             contact.tool_reactions(solution.pressure).tolist(),

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from bemcontact.assessment.accuracy import bar_of_largest
 from bemcontact.contact.free_motions import angle_of_round_off
 from bemcontact.problem import Units
 from bemcontact.report.bars import (
@@ -64,9 +65,9 @@ def _unknown_error(record: JsonObject) -> str:
 
 
 def peak_bar(record: JsonObject) -> float | None:
-    """Error of the largest pressure of all zones."""
+    """Error of the largest pressure, of whatever zone it is; None if the error of one zone is not known."""
     bars = [item for item in bars_of(record, "peak") if item["value"] is not None]
-    return max(bars, key=lambda item: item["value"], default={"bar": None})["bar"]
+    return bar_of_largest([(item["value"], item["bar"]) for item in bars])
 
 
 def _peaks(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
@@ -102,7 +103,7 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
     size, pressed, moves = coordinate_size(record), pressed_by(record), record["scales"]["displacement"]
     if not record["intervals"]:
         held = "" if record["motion_names"] else ", and the supports alone hold the body"
-        yield "Contact", f"nowhere: the body presses on no rigid surface{held}"
+        yield "Contact", f"nowhere: the body presses on no rigid surface{held}{_gap_left(record, units)}"
     for (zone, place), count in Counter(contact_intervals(record, units, merged=True)).items():
         yield "Contact", f"{zone}: {place}" + (f", {count} times" if count > 1 else "")
     for zone in dict.fromkeys(record["zone"]):
@@ -133,6 +134,16 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
     written = (f"{name.replace('_', ' ')} {value + 0.0:.1e}" for name, value in residuals if value is not None)
     yield "Residuals", ", ".join(written)
+
+
+def _gap_left(record: JsonObject, units: Units) -> str:
+    """Write the smallest gap where nothing touches, of which a wrong load or place of a surface is seen."""
+    if not record["gap"]:
+        return ""
+    i = int(np.argmin(record["gap"]))
+    place = vector(record["nodes"][i], units.length, scale=coordinate_size(record))
+    gap = with_unit(number(zero_if_negligible(record["gap"][i], coordinate_size(record))), units.length)
+    return f"; the smallest gap left is {gap}, at {place} in {record['zone'][i]}"
 
 
 def contact_intervals(
@@ -225,8 +236,14 @@ def _tool(record: JsonObject, tool: JsonObject, size: float, pressed: float, mov
     turn = zero_if_negligible(tool["rotation"] * size, moves) / (size or 1.0)
     turn = turn if not tool["free"][2] or abs(turn) > _least_angle(record) else 0.0
     turned = with_unit(with_bar(turn, _bar_of_motion(record, "rotation", tool["name"])), "rad")
-    force = vector(tool["force_of_body"], units.line_force, scale=pressed)
-    moment = with_unit(number(zero_if_negligible(tool["moment_of_body"], pressed * size)), units.line_moment)
+    components = zip(tool["force_of_body"], tool["free"][:2], strict=True)
+    is_load = all(free or not zero_if_negligible(component, pressed) for component, free in components)
+    errors = [_force_errors(record, zone) for zone in tool["zones"]]
+    error = None if is_load or [] in errors else sum(map(sum, errors))
+    force = vector_with_error(tool["force_of_body"], error or None, units.line_force, pressed)
+    moment = zero_if_negligible(tool["moment_of_body"], pressed * size)
+    known = size * error / abs(moment) if moment and error and not tool["free"][2] else None
+    moment = with_unit(without_digits_beyond(moment, known), units.line_moment)
     about = vector(tool["point"])
     return (
         f"{tool['name']}: moves by {moved}, turns by {turned}; the body presses on it with {force}, moment {moment} "

@@ -55,7 +55,7 @@ def test_bars_are_no_smaller_than_the_change(changed: MeshDifference):
     assert fine["peak"].value == peaks[1]
     assert coarse["peak"].value == peaks[0]
     assert (fine["peak"].bar or 0) >= SAFETY * change
-    assert (coarse["peak"].bar or 0) >= (SAFETY + 1) * change
+    assert (coarse["peak"].bar or 0) >= (SAFETY + 1) * change * (1 - 1e-12)
 
 
 def test_the_change_of_the_pressure_as_a_whole_is_a_floor_of_all(changed: MeshDifference):

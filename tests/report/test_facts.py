@@ -100,7 +100,7 @@ def test_a_peak_whose_error_is_not_known_says_so_wherever_it_is_written():
 
 def test_of_two_zones_one_of_which_is_infinite_the_other_has_its_peak():
     lists = dict.fromkeys(
-        ("nodes", "intervals", "tributary_lengths", "pressure", "zone", "normals", "tools", "undetermined"), ()
+        ("nodes", "intervals", "tributary_lengths", "pressure", "zone", "normals", "tools", "undetermined", "gap"), ()
     )
     bars = (bar("peak", None, None, note="infinite at a corner"), bar("peak", 12.5, 0.01, zone="wall"))
     record = {
@@ -123,13 +123,14 @@ def facts_of_forces(
         "intervals": [{"zone": "foot", "start": [0.0, 0.0], "end": [9.0, 0.0], "arc": [0.0, 9.0]}] * any(forces),
         "run": [0] * len(forces), "arc_position": [float(place) for place in range(len(forces))],
         "tributary_lengths": forces, "pressure": [1.0] * len(forces), "normals": [[0.0, 1.0]] * len(forces),
-        "forces": {"foot": (0.0, total)}, "undetermined": (),
+        "forces": {"foot": (0.0, total)}, "undetermined": (), "gap": [0.0] * len(forces),
         "peak": None if infinite or not any(forces) else {"pressure": 1.0, "at": [0.0, 0.0]},
         "resultant": (1e-14 * total, total), "resultant_moment": 3.0 * total,
         "motion_names": ("rotation about (1, 2)", "rotation about (3, 4)", "translation along (0, 1)"),
         "rigid_amplitudes": (1e-15, 0.2, 0.3), "rotations": rotations, "scales": {"displacement": 1.0},
         "tools": [{"name": "punch", "point": [0.0, 0.0], "displacement": [0.0, -0.5], "rotation": 0.0,
-                   "force_of_body": [0.0, -total], "moment_of_body": 0.0, "free": [False, True, False]}],
+                   "force_of_body": [0.0, -total], "moment_of_body": 0.0, "free": [False, True, False],
+                   "zones": ["foot"]}],
         "residuals": dict.fromkeys(("penetration", "tension", "complementarity", "equilibrium", "force_balance")),
         "accuracy": accuracy(bar("peak", None if infinite else 1.0, None, note="infinite at a corner" * infinite)),
     }  # fmt: skip
