@@ -32,6 +32,8 @@ LANES = 8
 """Points that share a rule near an element."""
 SHARED_RULE_RHO = 3.0
 """Bernstein parameter from which all points of a block share a rule."""
+SUMMED = 4
+"""Elements whose known tractions and displacements are summed by themselves."""
 STRAIGHT = 1e-16
 """Least c2 over c1 of an element with a second root."""
 MANTISSA, HALF = 0x000FFFFFFFFFFFFF, 0x3FE0000000000000
@@ -280,28 +282,40 @@ def _integrate(
 
 
 @_machine_code
+def _first_of(rows: IntArray) -> int:
+    """The first of rows that follow each other, -1 if they do not or one is missing."""
+    return rows[0] if rows.min() >= 0 and rows[-1] - rows[0] == len(rows) - 1 else -1
+
+
+@_machine_code
 def _add(
-    line: Array, rows: IntArray, together: bool, w: Array,
+    target: Array, w: Array, a: int, factor_a: float, b: int, factor_b: float, c: int, factor_c: float, constant: float
+) -> None:
+    """Add factors times three rows of w, and a constant, to one number for each point."""
+    for i in range(len(target)):
+        target[i] += factor_a * w[a + i] + factor_b * w[b + i] + factor_c * w[c + i] + constant
+
+
+@_machine_code
+def _add_to_rows(
+    line: Array, rows: IntArray, first: int, w: Array,
     a: int, factor_a: float, b: int, factor_b: float, c: int, factor_c: float, constant: float,
 ) -> None:  # fmt: skip
-    """Add factors times three rows of w, and a constant, to the places `rows` (R,) of a column, -1 for none."""
-    R = len(rows)
-    if together:
-        target = line[rows[0] : rows[0] + R]
-        for i in range(R):
-            target[i] += factor_a * w[a + i] + factor_b * w[b + i] + factor_c * w[c + i] + constant
+    """Add as `_add` to the places `rows` (R,) of a column, -1 for none; `first` as of `_first_of`."""
+    if first >= 0:
+        _add(line[first : first + len(rows)], w, a, factor_a, b, factor_b, c, factor_c, constant)
         return
-    for i in range(R):
+    for i in range(len(rows)):
         if rows[i] >= 0:
             line[rows[i]] += factor_a * w[a + i] + factor_b * w[b + i] + factor_c * w[c + i] + constant
 
 
 @_machine_code
 def _add_node(
-    out: Array, rows_x: IntArray, rows_y: IntArray, together_x: bool, together_y: bool, w: Array, k: int,
+    out: Array, sums: Array, rows_x: IntArray, rows_y: IntArray, first_x: int, first_y: int, w: Array, k: int,
     node: int, columns: FlatColumns, factor: Factors,
 ) -> None:  # fmt: skip
-    """Add F of local node k to the columns of the node, and to the right sides where its displacement is known."""
+    """Add F of local node k to the columns of the node, and to the sums where its displacement is known."""
     along, normal, sin, cos = (6 + k) * STRIDE, (9 + k) * STRIDE, (12 + k) * STRIDE, (15 + k) * STRIDE
     for axis in range(2):
         if axis == 0:
@@ -312,33 +326,43 @@ def _add_node(
             gx, gy = -factor.skew, factor.skew
         column = columns.displacement[node, axis]
         if column >= 0:
-            _add(out[column], rows_x, together_x, w, x, fx, cx, gx, cx, 0.0, 0.0)
-            _add(out[column], rows_y, together_y, w, y, fy, cy, gy, cy, 0.0, 0.0)
-        for s in range(len(columns.known)):
+            _add_to_rows(out[column], rows_x, first_x, w, x, fx, cx, gx, cx, 0.0, 0.0)
+            _add_to_rows(out[column], rows_y, first_y, w, y, fy, cy, gy, cy, 0.0, 0.0)
+        for s in range(len(sums)):
             u = columns.known[s, node, axis]
             if u != 0:
-                line = out[columns.first_known + s]
-                _add(line, rows_x, together_x, w, x, u * fx, cx, u * gx, cx, 0.0, 0.0)
-                _add(line, rows_y, together_y, w, y, u * fy, cy, u * gy, cy, 0.0, 0.0)
+                _add(sums[s, 0], w, x, u * fx, cx, u * gx, cx, 0.0, 0.0)
+                _add(sums[s, 1], w, y, u * fy, cy, u * gy, cy, 0.0, 0.0)
 
 
 @_machine_code
-def _add_traction(
-    out: Array, rows_x: IntArray, rows_y: IntArray, together_x: bool, together_y: bool, w: Array, k: int,
-    slot: int, columns: FlatColumns, factor: Factors, share: float,
+def _add_tractions(
+    out: Array, sums: Array, rows_x: IntArray, rows_y: IntArray, first_x: int, first_y: int, w: Array, e: int, k: int,
+    columns: FlatColumns, factor: Factors, share: float,
 ) -> None:  # fmt: skip
-    """Add G times traction of local node k to the columns of a slot."""
-    log, cos, sin = (18 + k) * STRIDE, (21 + k) * STRIDE, (24 + k) * STRIDE
-    for at in range(columns.start[slot], columns.start[slot + 1]):
-        line, x, y, t = out[columns.column[at]], columns.x[at], columns.y[at], factor.turn
-        _add(line, rows_x, together_x, w, log, -factor.log * x, cos, t * x, sin, t * y, t * share * x)
-        _add(line, rows_y, together_y, w, log, -factor.log * y, cos, -t * y, sin, t * x, t * share * y)
+    """Add G times traction of local node k to the columns that it belongs to, and to the sums where it is known."""
+    log, cos, sin, t = (18 + k) * STRIDE, (21 + k) * STRIDE, (24 + k) * STRIDE, factor.turn
+    for at in range(columns.start[3 * e + k], columns.start[3 * e + k + 1]):
+        line, x, y = out[columns.column[at]], columns.x[at], columns.y[at]
+        _add_to_rows(line, rows_x, first_x, w, log, -factor.log * x, cos, t * x, sin, t * y, t * share * x)
+        _add_to_rows(line, rows_y, first_y, w, log, -factor.log * y, cos, -t * y, sin, t * x, t * share * y)
+    for s in range(len(sums)):
+        x, y = columns.traction[s, e, k, 0], columns.traction[s, e, k, 1]
+        if x != 0 or y != 0:
+            _add(sums[s, 0], w, log, -factor.log * x, cos, t * x, sin, t * y, t * share * x)
+            _add(sums[s, 1], w, log, -factor.log * y, cos, -t * y, sin, t * x, t * share * y)
 
 
 @_machine_code
-def _together(rows: IntArray) -> bool:
-    """Whether rows follow each other and none is missing."""
-    return rows.min() >= 0 and rows[-1] - rows[0] == len(rows) - 1
+def _flush(out: Array, sums: Array, rows_x: IntArray, rows_y: IntArray, first: int) -> None:
+    """Add sums of some elements to the right sides, and begin anew: shorter sums have smaller rounding errors."""
+    for s in range(len(sums)):
+        for i in range(len(rows_x)):
+            if rows_x[i] >= 0:
+                out[first + s, rows_x[i]] += sums[s, 0, i]
+            if rows_y[i] >= 0:
+                out[first + s, rows_y[i]] += sums[s, 1, i]
+    sums[:] = 0
 
 
 @_machine_code
@@ -360,7 +384,8 @@ def add_rows(
     for first in starts:
         R = min(step, c - first)
         rows_x, rows_y = points.row[0, first : first + R], points.row[1, first : first + R]
-        together_x, together_y = _together(rows_x), _together(rows_y)
+        first_x, first_y = _first_of(rows_x), _first_of(rows_y)
+        sums = np.zeros((len(columns.known), 2, R))
         middle = (points.base[first] + points.base[first + R - 1]) / 2
         radius = 0.0
         for j in range(first, first + R):
@@ -382,10 +407,13 @@ def add_rows(
             for k in range(3):
                 if k < 2 or not carry:
                     node = elements.node[e, k]
-                    _add_node(out, rows_x, rows_y, together_x, together_y, w, k, node, columns, factor)
+                    _add_node(out, sums, rows_x, rows_y, first_x, first_y, w, k, node, columns, factor)
                 if with_U:
-                    share = rules.share[k]
-                    _add_traction(out, rows_x, rows_y, together_x, together_y, w, k, 3 * e + k, columns, factor, share)
+                    _add_tractions(
+                        out, sums, rows_x, rows_y, first_x, first_y, w, e, k, columns, factor, rules.share[k]
+                    )
+            if e % SUMMED == SUMMED - 1 or e == m - 1:
+                _flush(out, sums, rows_x, rows_y, columns.first_known)
         for i in range(R):
             node = points.corner[first + i]
             if node < 0:
@@ -414,6 +442,9 @@ def add_all(
     step = block_size(4 * len(elements.node))
     starts = np.arange(0, len(points.base), step)
     workers = min(len(starts), os.cpu_count() or 1)
+    if workers == 1:
+        add_rows(out, starts, step, points, elements, columns, rules, factor)
+        return
 
     def work(some: IntArray) -> None:
         add_rows(out, some, step, points, elements, columns, rules, factor)

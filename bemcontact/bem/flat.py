@@ -87,15 +87,17 @@ class FlatColumns(NamedTuple):
 
     displacement : (N, 2) column of F u along each axis, -1 for none
     known : (s, N, 2) factor of F in the right sides
+    traction : (s, m, 3, 2) factor of G in the right sides
     first_known : column of the first right side
     start : (3m + 1,) where the columns of each (element, local node) begin in those that follow
-    column : (q,) columns of G t
+    column : (q,) other columns of G t
     x, y : (q,) traction times Jacobian along each axis for a unit of the column
-    loaded : (m,) whether an element has any column of G t
+    loaded : (m,) whether G of an element is needed
     """
 
     displacement: IntArray
     known: Array
+    traction: Array
     first_known: int
     start: IntArray
     column: IntArray
@@ -105,24 +107,23 @@ class FlatColumns(NamedTuple):
 
     @classmethod
     def of(
-        cls, displacement: IntArray, known: Array, first_known: int,
+        cls, displacement: IntArray, known: Array, known_traction: Array, first_known: int,
         slot: IntArray, column: IntArray, traction: Array,
     ) -> Self:  # fmt: skip
         """Sort columns (q,) of G with tractions times Jacobian (q, 2) at slots 3 e + k (q,) by slots."""
-        m = len(displacement) // 2
-        used = traction.any(axis=1)
-        slot, column, traction = slot[used], column[used], traction[used]
+        m = known_traction.shape[1]
         order = np.argsort(slot, kind="stable")
         start = np.searchsorted(slot[order], np.arange(3 * m + 1))
         return cls(
             displacement=_integers(displacement),
             known=_reals(known),
+            traction=_reals(known_traction),
             first_known=first_known,
             start=_integers(start),
             column=_integers(column[order]),
             x=_reals(traction[order, 0]),
             y=_reals(traction[order, 1]),
-            loaded=_integers(start[3::3] > start[:-1:3]),
+            loaded=_integers((start[3::3] > start[:-1:3]) | known_traction.any(axis=(0, 2, 3))),
         )
 
 

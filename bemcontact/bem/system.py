@@ -342,24 +342,19 @@ class System:
         """Columns of the matrix, then of the right sides."""
         jacobians = (self.mesh.jacobians / self.length)[..., None]
         sought, axis = np.nonzero((self.unknowns.traction >= 0).reshape(-1, 2))
-        known = self.influence.known.reshape(len(self.loadings), -1, 2)
-        loading, given = np.nonzero(known.any(axis=-1))
         points = self.points
-        carried = points.normals[points.point] * jacobians[points.element, points.local]
+        pressed = points.normals[points.point] * jacobians[points.element, points.local]
         return FlatColumns.of(
             displacement=self.unknowns.displacement,
             known=-self._known_displacement,
+            known_traction=self.influence.known,
             first_known=self.size,
-            slot=np.concatenate([sought, given, 3 * points.element + points.local]),
-            column=np.concatenate([
-                self.unknowns.traction.reshape(-1, 2)[sought, axis],
-                self.size + loading,
-                self.size + len(self.loadings) + points.point,
-            ]),
-            traction=np.concatenate([
-                -np.eye(2)[axis] * jacobians.reshape(-1, 1)[sought], known[loading, given], carried,
-            ]),
-        )  # fmt: skip
+            slot=np.append(sought, 3 * points.element + points.local),
+            column=np.append(
+                self.unknowns.traction.reshape(-1, 2)[sought, axis], self.size + len(self.loadings) + points.point
+            ),
+            traction=np.append(-np.eye(2)[axis] * jacobians.reshape(-1, 1)[sought], pressed, axis=0),
+        )
 
     @cached_property
     def null_vectors(self) -> Array:

@@ -83,11 +83,11 @@ def both_ways(system):
 
 def ensure_the_same(system):
     """Matrix and each right side agree to 1e-13 of the largest entry, for both are right to that."""
-    (A, b), (C, d) = map(assemble, both_ways(system))
+    (A, b), (other, d) = map(assemble, both_ways(system))
     assert A.flags.f_contiguous
     assert b.flags.f_contiguous
-    assert np.isfinite(C).all()
-    assert abs(A - C).max() <= 1e-13 * abs(C).max()
+    assert np.isfinite(other).all()
+    assert abs(A - other).max() <= 1e-13 * abs(other).max()
     assert (abs(b - d).max(axis=0) <= 1e-13 * abs(d).max(axis=0)).all()
 
 
