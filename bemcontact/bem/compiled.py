@@ -20,7 +20,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, ComplexArray, IntArray
 from bemcontact.bem.flat import FlatColumns, FlatElements, FlatPoints, FlatRules
 from bemcontact.bem.kernels import Factors
 
@@ -30,8 +30,10 @@ PARTS = 31
 """Rows of the array of a block."""
 LANES = 8
 """Points that share a rule near an element."""
-SHARED_RULE_RHO = 3.0
+SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which all points of a block share a rule."""
+SHARED_BY_LANES = 2.5
+"""Bernstein parameter from which LANES points share a rule without their own roots."""
 SUMMED = 4
 """Elements whose known tractions and displacements are summed by themselves."""
 STRAIGHT = 1e-16
@@ -234,11 +236,29 @@ def _singular(w: Array, i: int, x: float, c1: complex, c2: complex, rules: FlatR
 
 
 @_machine_code
+def _disc(points: FlatPoints, first: int, last: int) -> tuple[complex, float]:
+    """As `skeleton.disc`, of points from the first to before the last."""
+    middle = (points.base[first] + points.base[last - 1]) / 2
+    radius = 0.0
+    for j in range(first, last):
+        radius = max(radius, abs((points.base[j] - middle) + points.offset[j]))
+    return middle, radius
+
+
+@_machine_code
+def _least_rho(c0: complex, c1: complex, c2: complex, middle: complex, radius: float) -> float:
+    """A lower bound of ρ for all points of a disc, as in `Influence`."""
+    a1, a2, distance = abs(c1), abs(c2), max(abs(c0 - middle) - radius, 0.0)
+    r = 2 * distance / (a1 + math.sqrt(a1 * a1 + 4 * a2 * distance))
+    return r + math.sqrt(r * r - 1) if r > 1 else 1.0
+
+
+@_machine_code
 def _integrate(
-    w: Array, bits: IntArray, tiers: IntArray, first: int, R: int, middle: complex, radius: float,
+    w: Array, bits: IntArray, tiers: IntArray, first: int, R: int, middle: ComplexArray, radius: Array,
     points: FlatPoints, elements: FlatElements, e: int, with_U: bool, rules: FlatRules,
 ) -> None:  # fmt: skip
-    """All integrals of R points from the first one on, in a disc, with one element."""
+    """All integrals of R points from the first one on with one element; discs of all points, then of each LANES."""
     c1, c2, mid = elements.c1[e], elements.c2[e], elements.z[e, 1]
     padded = (R + LANES - 1) // LANES * LANES
     for i in range(padded):
@@ -246,10 +266,7 @@ def _integrate(
         tau = (mid - points.base[j]) - points.offset[j]
         w[i], w[STRIDE + i] = tau.real, tau.imag
     w[6 * STRIDE : (27 if with_U else 18) * STRIDE] = 0
-    a1, a2 = abs(c1), abs(c2)
-    distance = max(abs(mid - middle) - radius, 0.0)
-    r = 2 * distance / (a1 + math.sqrt(a1 * a1 + 4 * a2 * distance))
-    rho = r + math.sqrt(r * r - 1) if r > 1 else 1.0
+    rho = _least_rho(mid, c1, c2, middle[0], radius[0])
     if rho > SHARED_RULE_RHO:
         tier = _tier(rho, rules.rho if with_U else rules.rho_of_t)
         _regular(w, bits, 0, padded, rules.order[tier], rules.xi[tier], rules.shapes[tier], c1, c2, with_U)
@@ -257,6 +274,13 @@ def _integrate(
     far = len(rules.rho)
     for lane in range(0, padded, LANES):
         highest, some = 0, False
+        part = 1 + lane // LANES
+        rho = _least_rho(mid, c1, c2, middle[part], radius[part])
+        if rho > SHARED_BY_LANES:
+            tier = _tier(rho, rules.rho if with_U else rules.rho_of_t)
+            n, xi, shapes = rules.order[tier], rules.xi[tier], rules.shapes[tier]
+            _regular(w, bits, lane, lane + LANES, n, xi, shapes, c1, c2, with_U)
+            continue
         for i in range(lane, lane + LANES):
             j = first + min(i, R - 1)
             t0, t1, t2 = _at_nodes(points, j, elements, e)
@@ -380,16 +404,17 @@ def add_rows(
     w = np.zeros(PARTS * STRIDE)
     bits = w.view(np.int64)
     tiers = np.zeros(STRIDE, np.int64)
+    middle, radius = np.zeros(1 + STRIDE // LANES, np.complex128), np.zeros(1 + STRIDE // LANES)
     m, c = len(elements.node), len(points.base)
     for first in starts:
         R = min(step, c - first)
         rows_x, rows_y = points.row[0, first : first + R], points.row[1, first : first + R]
         first_x, first_y = _first_of(rows_x), _first_of(rows_y)
         sums = np.zeros((len(columns.known), 2, R))
-        middle = (points.base[first] + points.base[first + R - 1]) / 2
-        radius = 0.0
-        for j in range(first, first + R):
-            radius = max(radius, abs((points.base[j] - middle) + points.offset[j]))
+        middle[0], radius[0] = _disc(points, first, first + R)
+        for lane in range(0, R, LANES):
+            part = 1 + lane // LANES
+            middle[part], radius[part] = _disc(points, first + lane, first + min(lane + LANES, R))
         carried = False
         for e in range(m):
             with_U = columns.loaded[e] != 0
@@ -429,17 +454,16 @@ def add_rows(
                     out[columns.first_known + s, at] += columns.known[s, node, axis] * value
 
 
-def block_size(degrees_of_freedom: int) -> int:
-    """Points of a block: few of them share more rules, many write longer pieces of a column."""
-    limits = ((3000, 128), (1000, 64), (300, 32))
-    return next((size for least, size in limits if degrees_of_freedom > least), 16)
+def block_size(count: int) -> int:
+    """Points of a block of so many in all: smaller ones share more rules, larger ones write longer pieces of columns."""
+    return STRIDE // 2 if STRIDE < count < 8 * STRIDE else STRIDE
 
 
 def add_all(
     out: Array, points: FlatPoints, elements: FlatElements, columns: FlatColumns, rules: FlatRules, factor: Factors
 ) -> None:
     """Add the equations of all points, as `add_rows`, on all processors."""
-    step = block_size(4 * len(elements.node))
+    step = block_size(len(points.base))
     starts = np.arange(0, len(points.base), step)
     workers = min(len(starts), os.cpu_count() or 1)
     if workers == 1:
