@@ -455,7 +455,7 @@ def add_rows(
 
 
 def block_size(count: int) -> int:
-    """Points of a block of so many in all: smaller ones share more rules, larger ones write longer pieces of columns."""
+    """Points of a block of so many in all: small ones share more rules, large ones write longer pieces of columns."""
     return STRIDE // 2 if STRIDE < count < 8 * STRIDE else STRIDE
 
 

@@ -1,6 +1,7 @@
 """A system as flat arrays of numbers, which machine code reads (`compiled`); nothing is computed here but places.
 
 All arrays are writable, in C order and of one type each, because machine code is made for the types of its arguments.
+Machine code that was kept knows the fields of these classes: a change here needs a change of the file of `compiled`.
 """
 
 from functools import lru_cache
