@@ -271,7 +271,7 @@ def _integrate(
         tier = _tier(rho, rules.rho if with_U else rules.rho_of_t)
         _regular(w, bits, 0, padded, rules.order[tier], rules.xi[tier], rules.shapes[tier], c1, c2, with_U)
         return
-    far = len(rules.rho)
+    closed = len(rules.rho)
     for lane in range(0, padded, LANES):
         highest, some = 0, False
         part = 1 + lane // LANES
@@ -288,18 +288,18 @@ def _integrate(
             tier = _tier(_bernstein(start + step), rules.rho)
             for on in range(points.on_start[j], points.on_start[j + 1]):
                 if points.on_element[on] == e:
-                    tier = far + 1
+                    tier = closed + 1
             tiers[i] = tier
-            if tier < far:
+            if tier < closed:
                 highest, some = max(highest, tier), True
         if some:
             n, xi, shapes = rules.order[highest], rules.xi[highest], rules.shapes[highest]
             _regular(w, bits, lane, lane + LANES, n, xi, shapes, c1, c2, with_U)
         for i in range(lane, min(lane + LANES, R)):
             j = first + i
-            if tiers[i] == far:
+            if tiers[i] == closed:
                 _near_singular(w, i, points, j, elements, e, rules)
-            elif tiers[i] > far:
+            elif tiers[i] > closed:
                 for on in range(points.on_start[j], points.on_start[j + 1]):
                     if points.on_element[on] == e:
                         _singular(w, i, points.on_local[on], c1, c2, rules)
