@@ -10,6 +10,7 @@ for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the many processes that tests start compile each module once
 
+import pytest  # noqa: E402
 from hypothesis import settings  # noqa: E402
 
 settings.register_profile("repeatable", derandomize=True, deadline=None, max_examples=50)
@@ -19,6 +20,14 @@ settings.load_profile("repeatable")
 
 SLOW = 10.0
 """Seconds of a test that should have the marker slow: twice the five of the marker, for a machine with other work."""
+
+
+@pytest.fixture(autouse=True, scope="session")
+def numpy_by_default():
+    """Results do not depend on whether a test before has imported numba."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("bemcontact.bem.system.numba_is_imported", lambda: False)
+        yield
 
 
 def pytest_terminal_summary(terminalreporter):

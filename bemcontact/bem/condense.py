@@ -48,7 +48,7 @@ class Condensation:
         body = replace(self.body, problem=problem)
         ensure_held(body)
         contact = self.contact.with_factors(problem.factors())
-        named = replace(contact, name=problem.title, notes=body.notes)
+        named = replace(contact, name=problem.title, notes=(*body.notes, *self.system.notes))
         return replace(self, body=body, contact=named)
 
     @property
@@ -134,7 +134,7 @@ def _condensation(body: Body, system: System, response: Response) -> Condensatio
         name=body.problem.name,
         zone_names=tuple(body.problem.contact_zones),
         units={"length": body.problem.units.length, "force": body.problem.units.force},
-        notes=body.notes,
+        notes=(*body.notes, *system.notes),
         motion_names=body.seen.describe(),
         motion_arms=body.seen.arms,
         points=body.mesh.nodes[points.node],

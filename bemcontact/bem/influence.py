@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
-from bemcontact.bem import compiled, kernels, reference_element
+from bemcontact.bem import kernels, reference_element
 from bemcontact.bem.kernels import Components, GaussRule
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.skeleton import RATIO, disc, skeleton
@@ -30,8 +30,6 @@ LARGEST_BLOCK = 400_000
 """Pairs of one block of rows: bounds its memory to about 100 MB."""
 CACHE_SIZE = 24_000
 """Kernel evaluations at a time: about ten arrays of them stay in the second-level cache."""
-WORTH_COMPILING = 4000
-"""Degrees of freedom from which numba is used if it is installed: for fewer, its import takes longer than it saves."""
 SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which the elements that are far from a block of points share a rule."""
 
@@ -108,14 +106,12 @@ class Influence:
     poisson_ratio : effective one, of plane strain
     traction_elements : (e,) elements whose columns of G are wanted, ascending
     known : (s, m, 3, 2) tractions times Jacobian of each of which only the sum G t is wanted
-    by_numba : whether machine code sums the far part; if None, it does for large meshes if numba is installed
     """
 
     mesh: Mesh
     poisson_ratio: float
     traction_elements: IntArray
     known: Array = field(default_factory=lambda: np.zeros((0, 0, 3, 2)))
-    by_numba: bool | None = None
 
     @cached_property
     def nodes(self) -> ComplexArray:
@@ -129,7 +125,7 @@ class Influence:
         return self.nodes[self.mesh.elements]
 
     @cached_property
-    def _inner_angles(self) -> Array:
+    def inner_angles(self) -> Array:
         """Angle (m,) inside the body where each element starts, of the nodes as they are here, rounded.
 
         A different rounding of an angle between short elements would act as a turn of all displacements there.
@@ -160,13 +156,14 @@ class Influence:
         return _places(self.traction_elements, len(self.mesh.elements))
 
     @cached_property
-    def _factors(self) -> kernels.Factors:
+    def factors(self) -> kernels.Factors:
+        """Factors of the integrals."""
         return kernels.factors(self.poisson_ratio)
 
     @cached_property
     def _rules(self) -> list[tuple[GaussRule, ComplexArray]]:
         """For each tier: the rule, and dζ/dξ (n, m) at its Gauss points."""
-        rules = [kernels.gauss_rule(int(order), self._factors) for order in reference_element.ORDERS]
+        rules = [kernels.gauss_rule(int(order), self.factors) for order in reference_element.ORDERS]
         from_middle = self.element_nodes - self.element_nodes[:, 1:2]
         return [(rule, rule.derivatives.T @ from_middle.T) for rule in rules]
 
@@ -231,12 +228,6 @@ class Influence:
         )
         return tiers, (rho > SHARED_RULE_RHO) & (radius <= RATIO * (abs(c0 - middle) - c1 - c2))
 
-    @cached_property
-    def _far_sums(self) -> compiled.FarSums | None:
-        """The compiled function, if there is one and it is wanted."""
-        large = self.mesh.degrees_of_freedom >= WORTH_COMPILING
-        return compiled.far_sums() if (large if self.by_numba is None else self.by_numba) else None
-
     def _far(self, rows: slice, z: ComplexArray, nodes: ComplexArray, tiers: IntArray, space: _Space) -> InfluenceRows:
         """A block with the influence of far elements on its points, by one Gauss rule each; tier -1 leaves one out."""
         columns = len(self.traction_elements)
@@ -244,10 +235,9 @@ class Influence:
             return self._zero(rows, len(z), columns)
         few = skeleton(z)
         part = self._zero(rows, len(few.at), len(self._loaded))
-        by_run = self._far_by_products if self._far_sums is None else self._far_by_loops
         for run in self._runs(tiers):
             if tiers[run.start] >= 0:
-                by_run(part, z[few.at], nodes[run], int(tiers[run.start]), run)
+                self._far_by_products(part, z[few.at], nodes[run], int(tiers[run.start]), run)
         return InfluenceRows(
             rows=rows,
             F=few.extend(part.F, space.F),
@@ -259,15 +249,6 @@ class Influence:
         """A block of zeros for a number of points, with G for a number of elements."""
         F, G = np.zeros((4, len(self.nodes), points)), np.zeros((3, 3, columns, points))
         return InfluenceRows(rows=rows, F=F, G=G, known=np.zeros((len(self.known), 2, points)))
-
-    def _far_by_loops(self, block: InfluenceRows, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice) -> None:
-        """Every point with every element of a run, by one Gauss rule, in machine code."""
-        assert self._far_sums is not None
-        rule, tangent = self._rules[tier]
-        self._far_sums(
-            block.F, block.G, z, self.mesh.elements[run], int(self._slot[run.start]),
-            rule.shapes.T @ nodes.T, tangent[:, run], rule.weighted, self._factors,
-        )  # fmt: skip
 
     def _far_by_products(
         self, block: InfluenceRows, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice
@@ -284,7 +265,7 @@ class Influence:
             some = polynomials[..., first : first + step]
             integrands = (some.reshape(6, -1).T @ powers).reshape(*some.shape[1:], len(z))
             part = slice(run.start + first, run.start + first + some.shape[-1])
-            result = kernels.regular(integrands, rule, self._factors, with_U=with_U)
+            result = kernels.regular(integrands, rule, self.factors, with_U=with_U)
             self._add_to_rows(block, part, result.T)
             if result.U is not None:
                 block.G[:, :, _successive(self._slot[part])] = result.U
@@ -305,7 +286,7 @@ class Influence:
                 result = self._regular(tau[at], int(tier))
             else:
                 part = kernels.Root(root.r[at], root.minus[at], root.plus[at])
-                result = kernels.components(kernels.near_singular(tau[at], part), self._factors)
+                result = kernels.components(kernels.near_singular(tau[at], part), self.factors)
             T[..., at], U[..., at] = result
         shape = (len(element), len(base))
         T, U = T.reshape(4, 3, *shape), U.reshape(3, 3, *shape)
@@ -320,7 +301,7 @@ class Influence:
         """Pairs (p, 3), each by itself, with one Gauss rule."""
         rule, _ = self._rules[tier]
         integrands = kernels.numerators(rule.shapes.T @ tau.T, rule.derivatives.T @ tau.T)
-        return kernels.regular(integrands, rule, self._factors, with_U=True)
+        return kernels.regular(integrands, rule, self.factors, with_U=True)
 
     def _on_elements(
         self, block: InfluenceRows, collocation: Collocation, element: IntArray
@@ -331,7 +312,7 @@ class Influence:
         their, local = collocation.on_element[on], collocation.on_local[on]
         row = point[on] - block.rows.start
         at = np.searchsorted(element, their) * block.F.shape[-1] + row
-        return at, kernels.components(kernels.singular(self.element_nodes[their], local), self._factors)
+        return at, kernels.components(kernels.singular(self.element_nodes[their], local), self.factors)
 
     def _add_to_rows(self, block: InfluenceRows, element: IntArray | slice, T: Array) -> None:
         """Add the integrals of T over some elements (4, 3, e, R)."""
@@ -345,7 +326,7 @@ class Influence:
         corner = collocation.corner[block.rows]
         row = np.flatnonzero(corner >= 0)
         for diagonal in range(2):
-            block.F[diagonal, corner[row], row] += self._factors.normal * -self._inner_angles[corner[row]]
+            block.F[diagonal, corner[row], row] += self.factors.normal * -self.inner_angles[corner[row]]
 
 
 def _places(of: IntArray, count: int) -> IntArray:

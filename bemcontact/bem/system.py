@@ -7,9 +7,11 @@ The normal displacement is computed from it, u_n = n·u, the inverse of (8), so 
 In this module lengths are divided by L0 and stresses by the shear modulus (see `influence`).
 """
 
-from collections.abc import Iterator, Sequence
+import sys
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
+from importlib import import_module
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +19,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import kernels, reference_element
 from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.flat import FlatColumns, FlatElements, FlatPoints, FlatRules, flat_rules
 from bemcontact.bem.influence import Collocation, Influence, InfluenceRows
 from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import BoundaryValues, Mesh
@@ -29,8 +32,32 @@ from bemcontact.problem.material import Material
 
 OFFSET = 2 / 3
 """|ξ| of the collocation points inside the two elements at a node where both prescribe the displacement."""
+WORTH_COMPILING = 3000
+"""Degrees of freedom from which numba is imported if installed: for fewer, its import takes longer than it saves."""
+BY_NUMBA = "the equations were set up by machine code (numba): without it, the last digits may differ"
 STRAIGHT = 1e-8
 """Sine of the angle between two elements below which traction is continuous between them."""
+
+
+MachineCode = Callable[[Array, FlatPoints, FlatElements, FlatColumns, FlatRules, kernels.Factors], None]
+"""A function with the parameters of `compiled.add_all`."""
+
+
+def numba_is_imported() -> bool:
+    """Whether something in this process has imported numba already."""
+    return "numba" in sys.modules
+
+
+@lru_cache(maxsize=1)
+def machine_code() -> MachineCode | None:
+    """`compiled.add_all`, or None without numba.
+
+    Its first call compiles it, which takes seconds once; the machine code is kept for later processes.
+    """
+    try:
+        return import_module("bemcontact.bem.compiled").add_all  # it imports numba
+    except ImportError:
+        return None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -166,6 +193,7 @@ class System:
     ----------
     mesh, material, points, motions : of the body
     loadings : s loadings, each with a right side; they prescribe displacement and traction at the same places
+    by_numba : whether machine code of numba, if installed, assembles the system; if None, it does if that is faster
     """
 
     mesh: Mesh
@@ -173,6 +201,7 @@ class System:
     points: ContactPoints
     motions: RigidMotions
     loadings: Sequence[Loading]
+    by_numba: bool | None = None
 
     @property
     def values(self) -> BoundaryValues:
@@ -191,6 +220,19 @@ class System:
             traction_elements=np.flatnonzero(needed),
             known=self._known_traction * jacobians[..., None],
         )
+
+    @cached_property
+    def machine_code(self) -> MachineCode | None:
+        """The compiled function that assembles the system, if there is one and it is wanted."""
+        wanted = self.by_numba
+        if wanted is None:
+            wanted = numba_is_imported() or self.mesh.degrees_of_freedom >= WORTH_COMPILING
+        return machine_code() if wanted else None
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a user should know about how the system was assembled."""
+        return () if self.machine_code is None else (BY_NUMBA,)
 
     @cached_property
     def unknowns(self) -> Unknowns:
@@ -298,6 +340,32 @@ class System:
         x, y = self._unit_pressures
         return np.vstack([b, x.times(G[0]) + y.times(G[1])])
 
+    def flat_points(self) -> FlatPoints:
+        """Collocation points with their rows, as machine code wants them."""
+        return FlatPoints.of(self.equations.collocation, self.equations.row)
+
+    def flat_integrals(self) -> tuple[FlatElements, FlatColumns, FlatRules, kernels.Factors]:
+        """What machine code integrates, where it goes, and how."""
+        return FlatElements.of(self.influence), self._flat_columns(), flat_rules(), self.influence.factors
+
+    def _flat_columns(self) -> FlatColumns:
+        """Columns of the matrix, then of the right sides."""
+        jacobians = (self.mesh.jacobians / self.length)[..., None]
+        sought, axis = np.nonzero((self.unknowns.traction >= 0).reshape(-1, 2))
+        points = self.points
+        pressed = points.normals[points.point] * jacobians[points.element, points.local]
+        return FlatColumns.of(
+            displacement=self.unknowns.displacement,
+            known=-self._known_displacement,
+            known_traction=self.influence.known,
+            first_known=self.size,
+            slot=np.append(sought, 3 * points.element + points.local),
+            column=np.append(
+                self.unknowns.traction.reshape(-1, 2)[sought, axis], self.size + len(self.loadings) + points.point
+            ),
+            traction=np.append(-np.eye(2)[axis] * jacobians.reshape(-1, 1)[sought], pressed, axis=0),
+        )
+
     @cached_property
     def null_vectors(self) -> Array:
         """V (unknowns, k): the free motions as columns of unknowns."""
@@ -342,6 +410,8 @@ class System:
 
 LARGEST_COPY = 2.5e8
 """Largest matrix in bytes that is kept beside its factors; of larger ones rows are computed anew for the refinement."""
+POINTS_OF_RESIDUAL = 512
+"""Points whose rows machine code computes at a time for the refinement."""
 SINGULAR = 1e-15
 """Reciprocal condition number below which the system counts as singular."""
 
@@ -349,9 +419,19 @@ SINGULAR = 1e-15
 def assemble(system: System) -> tuple[Array, Array]:
     """Set up the bordered matrix (size, size), in Fortran order for LU in place, and the right sides (size, s + n)."""
     unknowns = system.unknowns.size
-    matrix = np.zeros((system.size, system.size), order="F")
-    transposed = matrix.T
-    right = np.zeros((system.size, len(system.loadings) + len(system.points)), order="F")
+    transposed = np.zeros((system.size + len(system.loadings) + len(system.points), system.size))
+    if system.machine_code is None:
+        _place_rows(system, transposed)
+    else:
+        system.machine_code(transposed, system.flat_points(), *system.flat_integrals())
+    matrix, right = transposed[: system.size].T, transposed[system.size :].T
+    matrix[:unknowns, unknowns:] = system.border
+    matrix[unknowns:, :unknowns] = system.null_vectors.T
+    return matrix, right
+
+
+def _place_rows(system: System, transposed: Array) -> None:
+    """Write all rows into the transposed system, matrix and right sides one below the other."""
 
     def place(block: InfluenceRows) -> None:
         for rows in system.rows(block):
@@ -359,12 +439,9 @@ def assemble(system: System) -> tuple[Array, Array]:
             for part in rows.left:
                 transposed[first : first + len(part), rows.at] = part
                 first += len(part)
-            right[rows.at] = rows.right.T
+            transposed[system.size :, rows.at] = rows.right
 
     system.influence.each_block(system.equations.collocation, place)
-    matrix[:unknowns, unknowns:] = system.border
-    matrix[unknowns:, :unknowns] = system.null_vectors.T
-    return matrix, right
 
 
 def solve_system(system: System) -> Response:
@@ -402,7 +479,15 @@ def residual(system: System, solution: Array, weights: Array) -> Array:
                 first += len(part)
             result[rows.at] = left.T
 
-    system.influence.each_block(system.equations.collocation, place)
+    if system.machine_code is None:
+        system.influence.each_block(system.equations.collocation, place)
+    else:
+        points, integrals = system.flat_points(), system.flat_integrals()
+        for first in range(0, len(points.base), POINTS_OF_RESIDUAL):
+            at, some = points.part(first, first + POINTS_OF_RESIDUAL)
+            transposed = np.zeros((system.size + len(weights), len(at)))
+            system.machine_code(transposed, some, *integrals)
+            result[at] = transposed[system.size :].T @ weights - transposed[:unknowns].T @ z
     result[:unknowns] -= system.border @ s
     result[unknowns:] = -system.null_vectors.T @ z
     return result

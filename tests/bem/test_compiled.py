@@ -1,16 +1,19 @@
-"""Machine code and NumPy give the same sums; without numba, NumPy is used."""
+"""Machine code and NumPy set up the same equations; without numba, NumPy is used."""
 
 import dataclasses
 import sys
+from pathlib import Path
 
-import numba
 import numpy as np
 import pytest
-from bodies import arc, even, mesh_of, rectangle, segment, solved, values_of, without_rigid_motion
+from bodies import MESHES, arc, even, mesh_of, rectangle, segment, solved, system_of, values_of, without_rigid_motion
 
-from bemcontact.bem import compiled, influence
-from bemcontact.bem.influence import WORTH_COMPILING, Influence
-from bemcontact.bem.system import number_unknowns, place_equations
+import bemcontact
+from bemcontact.bem import system as system_module
+from bemcontact.bem.body import body_of
+from bemcontact.bem.condense import condense
+from bemcontact.bem.rigid_motions import free_rigid_motions
+from bemcontact.bem.system import BY_NUMBA, WORTH_COMPILING, System, assemble, machine_code, residual
 from bemcontact.problem.material import Material
 
 MATERIAL = Material(young_modulus=1000, poisson_ratio=0.3)
@@ -20,13 +23,20 @@ STRAIN = (STRESS - 0.3 * np.trace(STRESS) * np.eye(2)) / (2 * MATERIAL.shear_mod
 
 GRADED = np.append(0, np.cumsum(1.05 ** np.arange(100.0))) / np.sum(1.05 ** np.arange(100.0))
 """Element ends with lengths from 1 to 125."""
+HALF = np.geomspace(1, 1e9, 15)
+SHORT = np.append(0, np.cumsum(np.concatenate([HALF, HALF[::-1]]))) / (2 * HALF.sum())
+"""Element ends with lengths from 1 to 1e9, short at both ends."""
 
-MESHES = {
+BODIES = MESHES | {
     "straight": [rectangle(2, 1, even(60), even(30))],
     "curved": [[("c", arc((0, 0), 1, 0, 360), even(150))]],
     "graded": [[("flat", segment((-1, 0), (1, 0)), GRADED), ("arc", arc((0, 0), 1, 0, 180), GRADED)]],
     "two loops": [rectangle(2, 1, even(40), even(20)), [("hole", arc((1, 0.5), 0.3, 360, 0), even(40))]],
+    "short elements at corners": [rectangle(2, 1, SHORT, SHORT)],
 }
+
+MODELS = Path(__file__).parents[2] / "models"
+SHIPPED = sorted(path.relative_to(MODELS).with_suffix("").as_posix() for path in MODELS.rglob("*.yaml"))
 
 
 def displacement(points):
@@ -41,71 +51,127 @@ def traction(points, normals):
 def without_numba(monkeypatch):
     """Let every import of numba fail."""
     monkeypatch.setitem(sys.modules, "numba", None)
-    compiled.far_sums.cache_clear()
+    monkeypatch.delitem(sys.modules, "bemcontact.bem.compiled", raising=False)
+    machine_code.cache_clear()
     yield
-    compiled.far_sums.cache_clear()
+    machine_code.cache_clear()
 
 
-def influence_of(mesh, *, by_numba=None, traction_elements=()):
-    return Influence(
-        mesh=mesh, poisson_ratio=0.3, traction_elements=np.array(traction_elements, int), by_numba=by_numba
-    )
-
-
-def rows_of(source, fixed):
-    """All of F (4, N, c) and G (3, 3, e, c), by way of `each_block`."""
-    mesh = source.mesh
+def of_body(loops, fixed):
+    """A body under constant stress, on whose edges in `fixed` displacement is prescribed."""
+    mesh = mesh_of(*loops)
     values = values_of(mesh, fixed, displacement, traction)
-    collocation = place_equations(mesh, number_unknowns(mesh, values), source.nodes).collocation
-    F = np.full((4, len(mesh.nodes), len(collocation)), np.nan)
-    G = np.full((3, 3, len(source.traction_elements), len(collocation)), np.nan)
-
-    def keep(block):
-        F[..., block.rows], G[..., block.rows] = block.F, block.G
-
-    source.each_block(collocation, keep)
-    return F, G
+    return system_of(mesh, MATERIAL, values, free_rigid_motions(mesh, values.displacement_given))
 
 
-@pytest.mark.parametrize("name", MESHES)
-def test_machine_code_and_numpy_agree(name):
-    """Both ways agree to round-off of the largest entry. All elements, or those of one stretch, have columns of G."""
-    mesh = mesh_of(*MESHES[name])
-    m = len(mesh.elements)
-    for wanted in (np.arange(m), np.arange(m // 3, 2 * m // 3), np.zeros(0, int)):
-        one = influence_of(mesh, by_numba=True, traction_elements=wanted)
-        other = dataclasses.replace(one, by_numba=False)
-        fixed = {mesh.edge_names[0]: "xy"}
-        for compiled_rows, numpy_rows in zip(rows_of(one, fixed), rows_of(other, fixed), strict=True):
-            assert np.isfinite(numpy_rows).all()
-            largest = abs(numpy_rows).max(initial=0)
-            assert abs(compiled_rows - numpy_rows).max(initial=0) <= 1e-14 * largest
+def of_model(name, refine=1):
+    """A shipped model on its stated mesh, refined."""
+    body = body_of(bemcontact.load(MODELS / f"{name}.yaml", variant="stated mesh").refined(refine))
+    return System(
+        mesh=body.mesh, material=body.problem.material, points=body.points, motions=body.motions,
+        loadings=body.loadings,
+    )  # fmt: skip
 
 
-def test_loops_without_numba_agree_with_numpy(monkeypatch):
-    """The function that numba compiles gives the same result as Python."""
-    mesh = mesh_of(rectangle(2, 1, even(16), even(8)))
-    by_products = influence_of(mesh, by_numba=False, traction_elements=range(20))
-    by_loops = dataclasses.replace(by_products, by_numba=True)
-    monkeypatch.setattr(compiled, "far_sums", lambda: compiled.add_far)
-    for one, other in zip(rows_of(by_loops, {}), rows_of(by_products, {}), strict=True):
-        assert abs(one - other).max() <= 1e-14 * abs(other).max()
+def both_ways(system):
+    """The system by machine code, and by NumPy."""
+    by_code, by_numpy = (dataclasses.replace(system, by_numba=by_numba) for by_numba in (True, False))
+    assert by_code.machine_code is not None
+    assert by_numpy.machine_code is None
+    return by_code, by_numpy
 
 
-def test_only_large_meshes_use_numba():
-    small, large = (mesh_of([("c", arc((0, 0), 1, 0, 360), even(count))]) for count in (8, WORTH_COMPILING // 4))
-    assert influence_of(small)._far_sums is None
-    assert influence_of(large)._far_sums is not None
-    assert influence_of(large, by_numba=False)._far_sums is None
+def ensure_the_same(system):
+    """Matrix and each right side agree to 1e-13 of the largest entry, for both are right to that."""
+    (A, b), (other, d) = map(assemble, both_ways(system))
+    assert A.flags.f_contiguous
+    assert b.flags.f_contiguous
+    assert np.isfinite(other).all()
+    assert abs(A - other).max() <= 1e-13 * abs(other).max()
+    assert (abs(b - d).max(axis=0) <= 1e-13 * abs(d).max(axis=0)).all()
+
+
+@pytest.mark.parametrize("refine", [1, 2])
+@pytest.mark.parametrize("name", SHIPPED)
+def test_machine_code_and_numpy_agree_on_shipped_models(name, refine):
+    """They have contact, supports, symmetry, corners, cracks, several loops, tools and load cases."""
+    ensure_the_same(of_model(name, refine))
+
+
+@pytest.mark.parametrize("axes", ["", "x", "y", "xy"])
+@pytest.mark.parametrize("name", BODIES)
+def test_machine_code_and_numpy_agree(name, axes):
+    """Nothing is fixed, or one edge; where two edges with different axes meet, a point may have one equation."""
+    first, *_ = mesh_of(*BODIES[name]).edge_names
+    ensure_the_same(of_body(BODIES[name], {first: axes} if axes else {}))
+
+
+@pytest.mark.parametrize(
+    "fixed", [{"bottom": "xy", "left": "xy"}, {"bottom": "y", "left": "x"}, {"bottom": "xy", "right": "x", "left": "y"}]
+)
+def test_machine_code_and_numpy_agree_where_fixed_edges_meet(fixed):
+    ensure_the_same(of_body(BODIES["straight"], fixed))
+    ensure_the_same(of_body(BODIES["plate with a hole"], fixed | {"hole": "xy"}))
+
+
+@pytest.mark.parametrize("size", [16, 32, 64, 128])
+def test_blocks_of_all_sizes_agree(size, monkeypatch):
+    assert machine_code() is not None
+    monkeypatch.setattr(sys.modules["bemcontact.bem.compiled"], "block_size", lambda _: size)
+    ensure_the_same(of_body(BODIES["two loops"], {"bottom": "xy"}))
+
+
+@pytest.mark.parametrize("name", ["slit_closure", "gallery/body_between_two_tools", "gallery/flat_punch"])
+def test_residual_of_rows_computed_anew_is_that_of_the_matrix(name, monkeypatch):
+    monkeypatch.setattr(system_module, "POINTS_OF_RESIDUAL", 37)
+    random = np.random.default_rng(1)
+    for system in both_ways(of_model(name)):
+        A, b = assemble(system)
+        x, weights = random.standard_normal((system.size, 3)), random.standard_normal((b.shape[1], 3))
+        expected = b @ weights - A @ x
+        assert abs(residual(system, x, weights) - expected).max() <= 1e-13 * abs(expected).max()
+
+
+def test_short_elements_keep_their_digits_by_machine_code():
+    """F u = 0 for translations, with the same accuracy in the rows of the shortest elements as elsewhere."""
+    for turn in (0.0, 0.5):
+        ends, z = SHORT, np.exp(1j * turn)
+        x, y = np.array([z.real, z.imag]), np.array([-z.imag, z.real])
+        corners = [0 * x, 2 * x, 2 * x + y, y]
+        names = ("bottom", "right", "top", "left")
+        loop = [(name, segment(corners[k - 4], corners[k - 3]), ends) for k, name in enumerate(names)]
+        system = dataclasses.replace(of_body([loop], {}), by_numba=True)
+        unknowns = system.unknowns.size
+        A = assemble(system)[0][:unknowns, :unknowns]
+        for axis in range(2):
+            assert abs(A[:, system.unknowns.displacement[:, axis]].sum(axis=1)).max() < 1e-14
+
+
+def test_machine_code_is_used_where_it_pays(monkeypatch):
+    small, large = (of_body([[("c", arc((0, 0), 1, 0, 360), even(n))]], {}) for n in (8, WORTH_COMPILING // 4))
+    assert small.machine_code is None
+    assert small.notes == ()
+    assert large.machine_code is not None
+    assert large.notes == (BY_NUMBA,)
+    assert dataclasses.replace(large, by_numba=False).machine_code is None
+    monkeypatch.setattr(system_module, "numba_is_imported", lambda: True)
+    assert dataclasses.replace(small).machine_code is not None
+
+
+def test_result_notes_that_machine_code_was_used(monkeypatch):
+    problem = bemcontact.load(MODELS / "cylinder_on_plane.yaml", variant="stated mesh")
+    assert BY_NUMBA not in condense(body_of(problem)).contact.notes
+    monkeypatch.setattr(system_module, "numba_is_imported", lambda: True)
+    assert condense(body_of(problem)).contact.notes[-1] == BY_NUMBA
 
 
 @pytest.mark.usefixtures("without_numba")
 def test_numpy_is_used_without_numba():
-    mesh = mesh_of(*MESHES["curved"])
-    wanting = influence_of(mesh, by_numba=True)
-    assert wanting._far_sums is None
-    F, _ = rows_of(wanting, {})
-    assert (rows_of(influence_of(mesh, by_numba=False), {})[0] == F).all()
+    wanting = dataclasses.replace(of_model("slit_closure"), by_numba=True)
+    assert wanting.machine_code is None
+    assert wanting.notes == ()
+    for one, other in zip(assemble(wanting), assemble(dataclasses.replace(wanting, by_numba=False)), strict=True):
+        assert (one == other).all()
 
 
 def test_machine_code_that_cannot_be_cached_is_compiled_again(monkeypatch):
@@ -116,19 +182,18 @@ def test_machine_code_that_cannot_be_cached_is_compiled_again(monkeypatch):
             raise RuntimeError("cannot cache function: no locator available")
         return function
 
-    monkeypatch.setattr(numba, "njit", njit)
-    compiled.far_sums.cache_clear()
-    assert compiled.far_sums() is compiled.add_far
-    compiled.far_sums.cache_clear()
+    assert machine_code() is not None
+    monkeypatch.setattr(sys.modules["numba"], "njit", njit)
+    assert sys.modules["bemcontact.bem.compiled"]._machine_code(displacement) is displacement
 
 
 @pytest.mark.parametrize("fixed", [{}, {"left": "xy"}, {"bottom": "y", "left": "x"}])
 def test_constant_stress_is_exact_by_machine_code(fixed, monkeypatch):
     """The patch test, with numba chosen by default."""
     mesh = mesh_of(rectangle(2, 1, GRADED, even(40)))
-    monkeypatch.setattr(influence, "WORTH_COMPILING", mesh.degrees_of_freedom)
+    monkeypatch.setattr(system_module, "WORTH_COMPILING", mesh.degrees_of_freedom)
     u, t, system = solved(mesh, MATERIAL, values_of(mesh, fixed, displacement, traction))
-    assert system.influence._far_sums is not None
+    assert system.machine_code is not None
     du = u - displacement(mesh.nodes)
     du = without_rigid_motion(mesh, du) if len(system.motions) else du
     dt = t - traction(mesh.nodes[mesh.elements], mesh.normals)

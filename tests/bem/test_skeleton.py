@@ -88,14 +88,13 @@ def test_blocks_with_a_skeleton_agree_with_separate_pairs(loops, first, points, 
     assert abs(block.G - pairs.G).max() <= TOLERANCE
 
 
-@pytest.mark.parametrize("by_numba", [False, True])
 @pytest.mark.parametrize("ratio", [1e6, 1e9])
-def test_short_elements_keep_their_digits(ratio, by_numba):
+def test_short_elements_keep_their_digits(ratio):
     """F u = 0 for translations, with the same accuracy in a block of the shortest elements as elsewhere."""
     half = np.geomspace(1, ratio, 25)
     ends = np.append(0, np.cumsum(np.concatenate([half, half[::-1]]))) / (2 * half.sum())
     mesh = mesh_of(rectangle(2, 1, ends, ends))
-    source = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.zeros(0, int), by_numba=by_numba)
+    source = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.zeros(0, int))
     values = values_of(mesh, {}, lambda at: 0 * at, lambda at, normals: 0 * normals)
     collocation = place_equations(mesh, number_unknowns(mesh, values), source.nodes).collocation
     for first in range(0, len(collocation), 16):
@@ -103,16 +102,13 @@ def test_short_elements_keep_their_digits(ratio, by_numba):
         assert abs(block.F.sum(axis=1)).max() < 1e-14
 
 
-@pytest.mark.parametrize("by_numba", [False, True])
-def test_the_sum_over_known_tractions_is_that_of_their_columns(by_numba):
+def test_the_sum_over_known_tractions_is_that_of_their_columns():
     """The sum is linear, for far and near elements, with tractions on some, with columns on others, and with both."""
     mesh = mesh_of([("c", arc((0, 0), 1, 0, 360), even(300))])
     known = np.random.default_rng(1).standard_normal((2, 300, 3, 2))
     known[:, 50:150] = 0
-    columns = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(300), by_numba=by_numba)
-    summed = Influence(
-        mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(20, 80), known=known, by_numba=by_numba
-    )
+    columns = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(300))
+    summed = Influence(mesh=mesh, poisson_ratio=0.3, traction_elements=np.arange(20, 80), known=known)
     values = values_of(mesh, {}, lambda at: 0 * at, lambda at, normals: 0 * normals)
     collocation = place_equations(mesh, number_unknowns(mesh, values), columns.nodes).collocation
     all_of_them, block = (one.block(collocation, slice(40, 200)) for one in (columns, summed))

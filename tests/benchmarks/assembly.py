@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf
 
 from bemcontact.bem.body import body_of
-from bemcontact.bem.compiled import far_sums
-from bemcontact.bem.system import System, assemble
+from bemcontact.bem.system import System, assemble, machine_code
 from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]
@@ -86,13 +85,6 @@ def factorization(matrix: Array) -> tuple[float, float]:
     return lu, best_of(lambda: matrix @ matrix)
 
 
-def summed(system: System, *, by_numba: bool) -> System:
-    """The same system, its far part summed in one way or the other."""
-    other = dataclasses.replace(system)
-    vars(other)["influence"] = dataclasses.replace(system.influence, by_numba=by_numba)  # where the property keeps it
-    return other
-
-
 def report(problem: Problem) -> None:
     system = system_of(problem)
     size = system.size
@@ -101,8 +93,8 @@ def report(problem: Problem) -> None:
         f"{problem.name:22s} N = {size:6d}  LU {lu:7.3f} s  LU/GEMM {lu / gemm:5.2f}"
         f"  GEMM {2e-9 * size**3 / gemm:5.0f} Gflop/s"
     )
-    for by_numba in (False, True) if far_sums() else (False,):
-        report_assembly(summed(system, by_numba=by_numba), "numba" if by_numba else "NumPy", lu)
+    for by_numba in (False, True) if machine_code() else (False,):
+        report_assembly(dataclasses.replace(system, by_numba=by_numba), "numba" if by_numba else "NumPy", lu)
 
 
 def report_assembly(system: System, name: str, lu: float) -> None:
