@@ -22,6 +22,8 @@ from bemcontact.studies.table import StudyTable, sorted_rows
 from bemcontact.studies.work import tasks_of
 from bemcontact.studies.workers import Rows, broken_pipes_are_errors, rows_by_processes, rows_here
 
+MOST_WORKERS = 1000
+"""Largest number of processes; more members at once need a cluster."""
 STAGE = "studying"
 """Name of the stage in progress."""
 
@@ -104,11 +106,10 @@ def study(
     ensure_callable(progress, "progress")
     plan = study_plan(problem, vary, accuracy)
     shown = chosen(outputs, problem)
-    count = whole_number(workers, "number of workers", 1)
     place = None if folder is None else file_path(folder, "folder")
     if scheduler is not None:
         text_of_argument(scheduler, "scheduler")
-    return study_of_plan(plan, shown, place, count, scheduler, progress)
+    return study_of_plan(plan, shown, place, workers, scheduler, progress)
 
 
 def study_of_plan(
@@ -124,6 +125,7 @@ def study_of_plan(
 
     Errors as of `study`; `spec` is the text of the problem as run.
     """
+    workers = whole_number(workers, "number of workers", 1, MOST_WORKERS)
     if scheduler is not None:
         ensure_dask()
     if folder is not None:

@@ -68,7 +68,7 @@ def _client(scheduler: str) -> Any:
 
     try:
         return distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:
+    except (OSError, ValueError, TypeError, AssertionError) as error:  # one of them for each kind of wrong address
         reason = escaped(str(error)) or type(error).__name__
         raise OptionError(
             f"no Dask scheduler answers at {escaped(scheduler)} ({reason}); start one with 'dask scheduler'"

@@ -94,6 +94,13 @@ CALLS: dict[str, Call] = {
         lambda change: bemcontact.sensitivities(CONTACT, {"a": change}), {"change": (ONES, [0])}
     ),
     "Sensitivities[]": (FREE.__getitem__, {"key": "initial_gap[0]"}),
+    "study": (
+        bemcontact.study,
+        {
+            "problem": PROBLEM, "vary": {"conditions.top.pressure": [1.0]}, "outputs": ("peak",), "workers": 1,
+            "scheduler": None, "accuracy": None, "progress": None,
+        },
+    ),
     "load_path": (bemcontact.load_path, {"start": CONTACT, "end": CONTACT}),
     "LoadPath.at": (PATH.at, {"t": 0.5}),
     "LoadPath.contact": (PATH.contact, {"t": 0.5}),
