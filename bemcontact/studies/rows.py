@@ -73,7 +73,7 @@ def row_of(number: int, values: Mapping[str, Any], result: Result) -> MemberRow:
         certified=result.certified,
         met=accuracy.met,
         mesh_error=float(accuracy.worst) if known else None,
-        message="; ".join(filter(None, (_message(status, result), _without_peak(result)))),
+        message="; ".join(filter(None, (_message(status, result).removesuffix("."), _without_peak(result)))),
         outputs=readings(result),
     )
 

@@ -77,6 +77,8 @@ def draw_output(axes: Axes, study: StudyTable, column: str, number: int) -> None
     _draw_doubtful(axes, study.rows, column, axis.name, place)
     if ticks:
         axes.set_xticks(places, [short_label(text, 18) for text in ticks])
+    else:
+        axes.locator_params(axis="x", nbins=6)
     axes.set_xlabel(short_label(axis.name, 60))
     axes.set_ylabel(labeled(short_label(column, 40), unit_of_output(column, study.units)))
     legend_below(axes)
