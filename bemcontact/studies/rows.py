@@ -73,9 +73,14 @@ def row_of(number: int, values: Mapping[str, Any], result: Result) -> MemberRow:
         certified=result.certified,
         met=accuracy.met,
         mesh_error=float(accuracy.worst) if known else None,
-        message="; ".join(filter(None, (_message(status, result).removesuffix("."), _without_peak(result)))),
+        message=_joined(_message(status, result), _without_peak(result)),
         outputs=readings(result),
     )
+
+
+def _joined(message: str, more: str) -> str:
+    """Two messages, each of which may be empty."""
+    return f"{message.removesuffix('.')}; {more}" if message and more else message or more
 
 
 def _message(status: MemberStatus, result: Result) -> str:
