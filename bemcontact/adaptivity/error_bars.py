@@ -332,7 +332,8 @@ def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
                     bar = max(estimate.bar(change), estimate.factor * run.element_at(position) / 2 / length)
                     note = ""
                 errors.append(bar)
-                yield ErrorBar(quantity=which, zone=name, interval=count, value=position, bar=bar, note=note)
+                at = _written(solved, run.point(position))
+                yield ErrorBar(quantity=which, zone=name, interval=count, value=position, bar=bar, at=at, note=note)
             both = None if None in errors else sum(filter(None, errors))
             why = note if both is None else ""
             yield ErrorBar(quantity="length", zone=name, interval=count, value=float(length), bar=both, note=why)

@@ -47,8 +47,8 @@ class ErrorBar(Leaf):
     bar: float | None
     """Estimated error, relative to the value; of a start or an end, to the length of its interval. Null if unknown."""
     at: Pair | None = None
-    """Place (x, y) of an infinite pressure, from which s is measured, or of the largest displacement if it is the only
-    one [L]; null for others."""
+    """Place (x, y) of a start or an end of contact, of an infinite pressure, from which s is measured, or of the
+    largest displacement if it is the only one [L]; null for others."""
     note: str = ""
     """Why there is no value or no error bar, or what they mean."""
 

@@ -234,3 +234,11 @@ def test_a_displacement_without_contact_hides_nothing_either():
         bar = meshed(bowed.with_value("accuracy", accuracy)).accuracies[0].bar_of("displacement")
         assert None not in (bar.value, bar.bar, reference.value, reference.bar)
         assert abs(bar.value - reference.value) <= bar.bar * bar.value + reference.bar * reference.value
+
+
+def test_starts_and_ends_have_their_places():
+    """Positions count from where the run begins; the places are those of the intervals of contact."""
+    result = bemcontact.solve(partial_load_lifts_off()[0], accuracy=0.02)
+    (interval,) = result.footprint.intervals
+    for name, place in (("start", interval.start), ("end", interval.end)):
+        assert result.accuracy.bar_of(name).at == pytest.approx(place, abs=1e-9)
