@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bemcontact.adaptivity.coarse_mesh import CoarseMesh
+from bemcontact.adaptivity.coarse_mesh import CoarseMesh, unknown
 from bemcontact.adaptivity.error_bars import SAFETY, error_bars, resolved
 from bemcontact.adaptivity.fields import MeshDifference, Solved, solved
 from bemcontact.adaptivity.hidden_changes import told_apart
@@ -18,6 +18,7 @@ from bemcontact.problem.problem import ACCURACY, Problem
 
 NONE_ASKED = "no accuracy is asked for, and errors are not estimated"
 NOT_ESTIMATED = "the errors of this mesh were not estimated"
+NOT_COMPARED = "this mesh is too coarse to tell its own error, and no mesh was found to compare it with"
 MOST_PASSES, PASSES_TO_COMPARE = 14, 4
 """Largest number of passes for an answer, and for a mesh beside a stated one."""
 HOPELESS, STALLED = 1.0, 4
@@ -133,7 +134,7 @@ def _compared(
         found = _found(wanted, lambda words: progress(f"to compare with: {words}"), PASSES_TO_COMPARE)
         finer = solved(found.problem)
     except (ProblemError, SingularSystemError, SolverError):
-        return [*map(tuple, bars)]  # they say themselves that they are not known
+        return [tuple(unknown(item, NOT_COMPARED) for item in own_bars) for own_bars in bars]
     known = enumerate(zip(bars, found.accuracies, strict=True))
     return [CoarseMesh(own=own, finer=finer, number=i, known=its.bars).bars(stated) for i, (stated, its) in known]
 

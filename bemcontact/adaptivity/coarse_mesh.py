@@ -5,7 +5,6 @@ The error is at most the difference of the two answers and the error of the seco
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import inf
 
 import numpy as np
 
@@ -50,7 +49,7 @@ class CoarseMesh:
         """The entries of the stated mesh with error bars, of which none is known if contact is not alike on both."""
         one, two = ((_contact(answer), answer.around) for answer in self.pair)
         if one != two:
-            return tuple(replace(item, bar=None, note=item.note if item.bar is None else OTHER) for item in stated)
+            return tuple(unknown(item, OTHER) for item in stated)
         there = {_of(item): item for item in self.known}
         return tuple(self._with_bar(item, there[_of(item)]) if _of(item) in there else item for item in stated)
 
@@ -116,12 +115,17 @@ class CoarseMesh:
         return (shapes * own[run_elements(solved, run)[element]]).sum(axis=1)
 
     def _moved_apart(self, item: ErrorBar) -> float:
-        """Distance of two motions of the same kind and mover; infinite if the other mesh has none."""
-        for one in motions(self.pair[0]):
-            for two in motions(self.pair[1]):
-                if (one.quantity, one.mover) == (two.quantity, two.mover) == (item.quantity, item.mover):
-                    return float(np.linalg.norm(two.amount - one.amount))
-        return inf
+        """Distance of the motions of an entry on both meshes."""
+        one, two = (
+            next(each.amount for each in motions(answer) if (each.quantity, each.mover) == (item.quantity, item.mover))
+            for answer in self.pair
+        )
+        return float(np.linalg.norm(two - one))
+
+
+def unknown(item: ErrorBar, why: str) -> ErrorBar:
+    """An entry whose error is not known, with the reason unless it had one."""
+    return replace(item, bar=None, note=item.note if item.bar is None else why)
 
 
 def _contact(answer: CaseAnswer) -> tuple[list[bool], dict[int, int]]:

@@ -31,7 +31,7 @@ from bemcontact.adaptivity.coarse_mesh import CoarseMesh
 from bemcontact.adaptivity.error_bars import error_bars, pressure_change
 from bemcontact.adaptivity.fields import MeshDifference, norm_squared, penetrations, solved
 from bemcontact.assessment.accuracy import ErrorBar
-from bemcontact.errors import ProblemError
+from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations.active_set import first_active_set, primal_dual
 from bemcontact.formulations.complementarity import ACCEPTED, standard_form
 from bemcontact.formulations.lemke import lemke
@@ -741,3 +741,16 @@ def test_without_contact_a_coarse_mesh_is_compared(elements: int, across: int):
     fine = solve(strip.to_be_meshed(1e-3)).accuracy.bar_of("displacement")
     assert fine.value == pytest.approx(0.01 * 4 * 60**3 / (3 * 210e3 / (1 - 0.3**2) * 4**3 / 12), rel=0.02)
     assert bar.bar is None or abs(bar.value - fine.value) <= bar.bar * bar.value + fine.bar * fine.value
+
+
+def test_without_a_mesh_to_compare_with_nothing_is_known(monkeypatch: pytest.MonkeyPatch):
+    """Bisecting elements longer than the body is thick tells a part of the error only: it is not taken for all."""
+
+    def fails(*_: object) -> Meshed:
+        raise SolverError("none")
+
+    monkeypatch.setattr(adapt, "_found", fails)
+    (judged,) = meshed(tip(9, 1, 0.01)).accuracies
+    assert judged.met is False
+    assert {item.bar for item in judged.bars} == {None}
+    assert "no mesh was found to compare it with" in judged.bars[-1].note
