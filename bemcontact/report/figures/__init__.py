@@ -4,28 +4,25 @@ Each ``draw_...`` function draws into axes that it is given; each ``figure_of_..
 """
 
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
-from bemcontact.report.figures.contact import draw_contact, draw_deformed
+from bemcontact.report.figures.contact import close_ups, draw_contact, draw_deformed
 from bemcontact.report.figures.design import draw_relief, draw_relieved_pressure, figure_of_design
+from bemcontact.report.figures.load_cases import draw_case_pressures, figure_of, figure_of_cases
 from bemcontact.report.figures.mesh_study import draw_convergence, draw_history, figures_of
 from bemcontact.report.figures.page import FORMATS, ensure_known_format, save, vector_graphic
 from bemcontact.report.figures.path import draw_interval_ends, draw_peaks, draw_resultants, figure_of_path
 from bemcontact.report.figures.problem import draw_problem, figure_of_problem
 from bemcontact.report.figures.reproduction import draw_against, figures_of_reproduction
 from bemcontact.report.figures.result import (
-    draw_case_peaks,
-    draw_case_pressures,
     draw_gap,
     draw_pressure,
-    figure_of,
-    figure_of_cases,
     figure_of_result,
 )
 from bemcontact.report.figures.study import draw_output, figures_of_study
 
 __all__ = [
     "FORMATS",
+    "close_ups",
     "draw_against",
-    "draw_case_peaks",
     "draw_case_pressures",
     "draw_contact",
     "draw_convergence",

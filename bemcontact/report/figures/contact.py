@@ -1,6 +1,6 @@
 """Pictures of the deformed body: the contact to scale with the pressure as a fan, and the magnified shape."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from matplotlib.path import Path
 from scipy.spatial import KDTree
 
 from bemcontact.analysis.result import Result
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, IntArray
 from bemcontact.bem.mesh import BoundaryState, element_curves
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.bars import with_bar, without_digits_beyond
@@ -39,9 +39,8 @@ CROSSING = 0.45
 """Share of the distance at which the normals of a hollow boundary cross that the fan may have."""
 BENT = 0.2
 """Turn of the normals of a fan, in radians, from which on their crossing would be seen."""
-SMALL, AROUND = 0.08, 4.0
-"""Extent of the contact over the size of the body below which only the part around it is shown, and over how many
-extents to either side."""
+CLOSE, AROUND = 0.35, 1.0
+"""Extent of a contact over that of the body below which it has a close-up, and how many extents that shows around it."""
 ROOM = 1.5
 """Room for a fan and its number over the length of the fan."""
 OVERHANG = 0.14
@@ -94,20 +93,44 @@ def _peak_text(fan: Fan, fans: Sequence[Fan], bar: float | None) -> str:
     return with_bar(fan.peak, bar) if largest else without_digits_beyond(fan.peak, bar)
 
 
-def draw_contact(axes: Axes, result: Result) -> None:
+def close_ups(result: Result, share: float = CLOSE) -> list[str]:
+    """Names of the zones whose contact is smaller than this share of the body, so that only a close-up shows it."""
+    state = result.boundary
+    if state is None:
+        return []
+    size = max(body_extent(state))
+    fans = [*_fans(result, state)]
+    return [
+        zone for zone in result.contact.zone_names if any(f.zone == zone for f in fans)
+        and float(np.ptp(_nearest(fans, zone, size), axis=0).max()) < share * size
+    ]  # fmt: skip
+
+
+def draw_contact(axes: Axes, result: Result, zone: str | None = None, scale: float | None = None) -> None:
     """Draw the deformed body to scale, its supports and loads, the rigid surfaces, and the pressure as a fan.
 
     The fan lies outside the body, along the normals of the rigid surface. The largest pressure of each unbroken piece
-    of contact is written beside it; one that is infinite is cut off and written as such. If the contact is small beside
-    the body, only the part of the body around it is shown, without supports and loads. `ValueError` for the result of a
-    condensed problem.
+    of contact is written beside it; one that is infinite is cut off and written as such. Of a `zone` only its contact
+    is drawn, with as much of the body to either side, without supports and loads; if it has several contacts far from
+    each other, that with the largest pressure. `scale` is the pressure with the longest fan; it is chosen if absent.
+    `ValueError` for the result of a condensed problem.
     """
+    sketch_contact(axes, result, zone, scale)()
+
+
+def sketch_contact(
+    axes: Axes, result: Result, zone: str | None = None, scale: float | None = None
+) -> Callable[[], None]:
+    """Draw as `draw_contact` does, and return what writes the numbers; call it when the whole page has its contents."""
     state, problem, units = result.boundary, result.problem, units_of(result.contact)
     if state is None or problem is None:
         raise ValueError("the result of a condensed problem has no boundary to draw")
     loops = _draw_body(axes, state)
-    fans = [*_fans(result, state)]
-    window, part = _window(fans, np.concatenate(loops))
+    fans = [fan for fan in _fans(result, state) if zone in (None, fan.zone)]
+    part = zone is not None and bool(fans)
+    window = np.concatenate(loops)
+    if zone is not None and fans:
+        window = _around(_nearest(fans, zone, max(body_extent(state))), window)
     width, height = np.ptp(window, axis=0)
     size = float(np.hypot(width, height))
     reach = size if part else OVERHANG * size
@@ -118,7 +141,7 @@ def draw_contact(axes: Axes, result: Result) -> None:
         displacement = _displacement(state)
         symbols = [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
     infinite = result.accuracy.infinite
-    scale = min(max(fan.peak for fan in fans), CUT * max(fan.mean for fan in fans)) if fans else 1.0
+    scale = scale or fan_scale(fans)
     length = max(TALL * float(np.sqrt(width * height)), LEAST * size)
     length = min([length, *(CROSSING * fan.longest(scale) for fan in fans)])
     names, tips = list[Name](), list[Array]()
@@ -133,10 +156,14 @@ def draw_contact(axes: Axes, result: Result) -> None:
     beyond = [fan.feet + ROOM * (tip - fan.feet) for fan, tip in zip(fans, tips, strict=True)]
     drawn = np.concatenate([window, *beyond, *([] if part else covered), *symbols])
     frame_plan(axes, drawn, units.length)
-    with without_glyph_warnings():
-        place_names(axes, names, np.concatenate([*loops, *grounds, *symbols, *map(_inked, fans, tips)]), loops)
-    for text in axes.texts:
-        text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6})
+
+    def write() -> None:
+        with without_glyph_warnings():
+            place_names(axes, names, np.concatenate([*loops, *grounds, *symbols, *map(_inked, fans, tips)]), loops)
+        for text in axes.texts:
+            text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6})
+
+    return write
 
 
 def _inked(fan: Fan, tips: Array) -> Array:
@@ -192,15 +219,29 @@ def _fans(result: Result, state: BoundaryState) -> Iterator[Fan]:
                 )  # fmt: skip
 
 
-def _window(fans: Sequence[Fan], body: Array) -> tuple[Array, bool]:
-    """Points (k, 2) to be shown: the whole body, or the part around a small contact; and whether it is a part."""
-    if fans:
-        feet = np.concatenate([fan.feet for fan in fans])
-        extent = float(np.ptp(feet, axis=0).max())
-        if extent < SMALL * float(np.ptp(body, axis=0).max()):
-            around = np.stack([feet.min(axis=0) - AROUND * extent, feet.max(axis=0) + AROUND * extent])
-            return np.clip(around, body.min(axis=0), body.max(axis=0)), True
-    return body, False
+def fan_scale(fans: Sequence[Fan]) -> float:
+    """The pressure at which fans have their full length: the largest, unless it is far above the mean."""
+    return min(max(fan.peak for fan in fans), CUT * max(fan.mean for fan in fans)) if fans else 1.0
+
+
+def common_scale(results: Sequence[Result]) -> float | None:
+    """The pressure at which the fans of several results have their full length; None where nothing touches."""
+    fans = [[*_fans(result, result.boundary)] for result in results if result.boundary is not None]
+    return max((fan_scale(own) for own in fans if own), default=None)
+
+
+def _nearest(fans: Sequence[Fan], zone: str, size: float) -> Array:
+    """Deformed points (k, 2) of the contact of a zone, or of that with the largest pressure if others are far away."""
+    own = [fan for fan in fans if fan.zone == zone]
+    feet = np.concatenate([fan.feet for fan in own])
+    return feet if np.ptp(feet, axis=0).max() < CLOSE * size else max(own, key=lambda fan: fan.peak).feet
+
+
+def _around(feet: Array, body: Array) -> Array:
+    """Corners (2, 2) of the part of the body around a contact."""
+    extent = float(np.ptp(feet, axis=0).max())
+    around = np.stack([feet.min(axis=0) - AROUND * extent, feet.max(axis=0) + AROUND * extent])
+    return np.clip(around, body.min(axis=0), body.max(axis=0))
 
 
 def _label(fan: Fan, tips: Array, text: str, *, cut: bool) -> Name:
@@ -221,21 +262,44 @@ def _label(fan: Fan, tips: Array, text: str, *, cut: bool) -> Name:
     )
 
 
-def _surfaces(result: Result, problem: Problem, overhang: float) -> Iterator[tuple[Array, Array]]:
-    """Lines (j, 2) of the rigid surfaces and unit normals (j, 2), displaced with their tools."""
+def _surfaces(
+    result: Result, problem: Problem, overhang: float, factor: float = 1.0, near: float = np.inf
+) -> Iterator[tuple[Array, Array]]:
+    """Lines (j, 2) of the rigid surfaces and unit normals (j, 2), displaced with their tools.
+
+    Displacements and gaps are magnified by the factor: a surface is moved as a whole, so that it meets the magnified
+    body where it touches or is nearest. That of a zone whose normals turn, such as a pin in a hole, is bent instead,
+    see `ground_of`.
+    """
     tools = result.contact.tools
     moves = dict(zip(tools.names, tools.displacement(result.solution.rigid_amplitudes), strict=True))
     points = dict(zip(tools.names, tools.point, strict=True))
-    for name, zone in problem.contact_zones.items():
-        if isinstance(zone.surface, DeflectedContour):
+    for number, (name, zone) in enumerate(problem.contact_zones.items()):
+        nearest = _nearest_points(result, number)
+        if isinstance(zone.surface, DeflectedContour) or (factor > 1 and _turn(result.contact.normals[nearest]) > TURN):
+            yield from ground_of(result, number, near, factor)
             continue
         line, normals = surface_line(problem, name, overhang)
         for tool in (tool for tool, stated in problem.tools.items() if name in stated.zones):
-            x, y, angle = moves[tool]
+            x, y, angle = factor * moves[tool]
             line = line + (x, y) + angle * (line - points[tool])[:, ::-1] * (-1, 1)
-        yield line, normals
-    if any(isinstance(zone.surface, DeflectedContour) for zone in problem.contact_zones.values()):
-        yield from ground_of(result, np.inf)
+        gaps = result.contact.initial_gap[nearest, None] * result.contact.normals[nearest]
+        yield line - (factor - 1) * gaps.mean(axis=0), normals
+
+
+def _nearest_points(result: Result, zone: int) -> IntArray:
+    """Contact points of a zone that touch, or the one with the smallest gap."""
+    own = np.flatnonzero(result.contact.zone == zone)
+    touching = own[result.touching[own]]
+    gap = result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes)
+    return touching if len(touching) else own[[int(np.argmin(gap[own]))]]
+
+
+def _turn(normals: Array) -> float:
+    """Largest angle [rad] between normals (k, 2) and their mean direction."""
+    mean = normals.mean(axis=0)
+    size = float(np.hypot(*mean))
+    return float(np.arccos(np.clip(normals @ mean / size, -1, 1)).max()) if size else np.pi
 
 
 def _displacement(state: BoundaryState) -> Displacement:
@@ -248,6 +312,8 @@ def _displacement(state: BoundaryState) -> Displacement:
 MAGNIFIED = 0.05
 """Share of the body's size at which the largest displacement can be seen well; smaller ones are magnified."""
 
+TURN = 0.6
+"""Turn of the normals of a contact, in radians, from which its surface is bent with the gaps, and not moved as a whole."""
 NEAR = 0.15
 """Share of the body's size up to which the rigid surface across a gap is shown."""
 DISTORTED = 0.1
@@ -260,8 +326,8 @@ def draw_deformed(axes: Axes, result: Result) -> None:
     Displacements and gaps to the rigid surfaces are magnified by a stated factor. `ValueError` for the result of a
     condensed problem.
     """
-    state = result.boundary
-    if state is None:
+    state, problem = result.boundary, result.problem
+    if state is None or problem is None:
         raise ValueError("the result of a condensed problem has no boundary to draw")
     factor = _magnification(state)
     before = element_curves(state.points, 9)
@@ -272,7 +338,10 @@ def draw_deformed(axes: Axes, result: Result) -> None:
     _draw_touching(axes, result, state, after)
     covered = [before.reshape(-1, 2), after.reshape(-1, 2)]
     size = float(np.hypot(*body_extent(state)))
-    covered += [draw_ground(axes, *ground, 0.025 * size, GREY) for ground in ground_of(result, NEAR * size, factor)]
+    surfaces = _surfaces(result, problem, OVERHANG * size, factor, NEAR * size)
+    low, high = (end(np.concatenate(covered), axis=0) for end in (np.min, np.max))
+    grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in surfaces]
+    covered += [np.clip(ground, low - OVERHANG * size, high + OVERHANG * size) for ground in grounds]
     unit = units_of(result.contact).length
     frame_plan(axes, np.concatenate(covered), unit)
     known = (bar.value for bar in result.accuracy.bars if bar.quantity == "displacement")  # as the table has it
@@ -310,8 +379,8 @@ def loops_of(state: BoundaryState, curves: Array) -> list[Array]:
     return np.split(curves, np.flatnonzero(breaks) + 1)
 
 
-def ground_of(result: Result, near: float, factor: float = 1.0) -> Iterator[tuple[Array, Array]]:
-    """Lines (j, 2) of rigid surface, with normals, no farther than `near` from the deformed body.
+def ground_of(result: Result, zone: int, near: float, factor: float = 1.0) -> Iterator[tuple[Array, Array]]:
+    """Lines (j, 2) of the rigid surface of a zone, with normals, no farther than `near` from the deformed body.
 
     Its gaps to the undeformed body are magnified by the factor, as displacements are, so that the two meet in contact.
     Where that would show it bent or turned, it is left out.
@@ -324,7 +393,7 @@ def ground_of(result: Result, near: float, factor: float = 1.0) -> Iterator[tupl
     shown = (factor * gap <= near) & (bent <= DISTORTED * near)
     for piece in pieces_of(contact, result.touching):
         for stretch in np.split(piece.index, np.flatnonzero(np.diff(shown[piece.index])) + 1):
-            if shown[stretch[0]] and len(stretch) > 1:
+            if contact.zone[stretch[0]] == zone and shown[stretch[0]] and len(stretch) > 1:
                 yield feet[stretch], contact.normals[stretch]
 
 

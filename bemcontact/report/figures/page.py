@@ -120,8 +120,8 @@ def frame_plan(axes: Axes, drawn: Array, unit: str) -> None:
     axes.set_xlim(low[0] - air, high[0] + air)
     axes.set_ylim(low[1] - air, high[1] + air)
     axes.set_aspect("equal")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(round_ticks(6))
+    for axis, extent in zip((axes.xaxis, axes.yaxis), high - low, strict=True):
+        axis.set_major_locator(round_ticks(max(2, round(6 * min(1.0, 1.5 * extent / longest)))))
     axes.set_xlabel(labeled("x", unit))
     axes.set_ylabel(labeled("y", unit))
     axes.spines[["top", "right"]].set_visible(False)
@@ -172,8 +172,8 @@ class Piece:
     run: int
 
     def place_of(self, arc: float, perimeter: float) -> float:
-        """Count an arc position as this piece does."""
-        return arc + perimeter if arc < self.arc[0] else arc
+        """Count an arc position as this piece does; only one that closes on itself has a perimeter."""
+        return arc + perimeter if arc < self.arc[0] and np.isfinite(perimeter) else arc
 
     @property
     def color(self) -> str:

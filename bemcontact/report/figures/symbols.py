@@ -116,6 +116,7 @@ def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence
     taken: list[Box] = []
     for name in names:
         text = axes.text(0, 0, name.text, color=name.color, fontsize=9, ha="center", va="center", zorder=6)
+        text.set_in_layout(False)  # or the next layout would move what it was placed beside
         extent = text.get_window_extent()
         size = (extent.width + 10, extent.height + 4)
         anchors, centers = _places(to_page.transform(name.anchors), name.directions, size)
@@ -157,10 +158,10 @@ def _settle(axes: Axes) -> None:
 
 
 def _room(axes: Axes) -> Bbox:
-    """Where names may stand on the page: what the layout gives to the axes, but for the sides that have ticks."""
+    """Where names may stand on the page: what the layout gives to the axes, but for sides that have ticks or a title."""
     own, whole = axes.get_window_extent(), axes.get_position(original=True).transformed(axes.figure.transSubfigure)
-    corner = own if axes.axison else whole
-    return Bbox([[corner.x0, corner.y0], [max(own.x1, whole.x1), max(own.y1, whole.y1)]])
+    corner, titled = own if axes.axison else whole, axes.get_title("left") or axes.get_title()
+    return Bbox([[corner.x0, corner.y0], [max(own.x1, whole.x1), own.y1 if titled else max(own.y1, whole.y1)]])
 
 
 def _to_data(axes: Axes, place: Array) -> tuple[float, float]:

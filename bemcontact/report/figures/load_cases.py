@@ -1,0 +1,163 @@
+"""The picture of all load cases: body and contact of each, their pressures and the envelope of these."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bemcontact.analysis.load_cases import CaseResults
+from bemcontact.analysis.result import Result
+from bemcontact.report.bars import with_bar
+from bemcontact.report.figures.contact import body_extent, close_ups, common_scale, sketch_contact
+from bemcontact.report.figures.page import (
+    GREY,
+    PIECE_COLOURS,
+    ceiling,
+    cut_off,
+    distance_label,
+    labeled,
+    new_page,
+    pieces_of,
+    plain,
+    short_label,
+    wrapped,
+)
+from bemcontact.report.figures.result import PANELS, ROW, WIDE, entitle, figure_of_result, of_zone, show_around
+from bemcontact.report.formatting import units_of, with_unit
+from bemcontact.report.verdicts import case_verdicts
+
+INCHES = 12
+MOST = 9
+"""Largest number of load cases that have pictures of their own."""
+TINY = 0.12
+"""Extent of the contact over that of the body below which close-ups are drawn instead of bodies."""
+DASHES = ("solid", "dashed", "dotted", "dashdot")
+"""Line styles of unbroken pieces of boundary."""
+ENVELOPE = "largest of all"
+"""Name of the envelope in legends."""
+
+
+def figure_of(results: Result | CaseResults) -> Figure:
+    """Compose the page of a result, or of the results of all load cases."""
+    return figure_of_result(results) if isinstance(results, Result) else figure_of_cases(results)
+
+
+def figure_of_cases(cases: CaseResults) -> Figure:
+    """Compose a page with the contact of each load case, and the pressures of all with their envelope."""
+    shown, first = shown_cases(cases), next(iter(cases.results.values()))
+    panels = panels_of(first)
+    columns, rows, height = _grid(shown, first)
+    figure = new_page(INCHES, 0.8 + rows * height + ROW * len(panels))
+    grid = figure.add_gridspec(rows + len(panels), columns, height_ratios=[*rows * [height], *len(panels) * [ROW]])
+    places = [figure.add_subplot(grid[divmod(i, columns)]) for i in range(len(shown) if rows else 0)]
+    for row, zone in enumerate(panels, rows):
+        draw_case_pressures(figure.add_subplot(grid[row, :]), cases, zone)
+    entitle(figure, f"{wrapped(cases.name, 6 * INCHES)}: all load cases", case_verdicts(cases), 9 * INCHES)
+    draw_case_contacts(places, cases, shown)
+    return figure
+
+
+def figure_of_contacts(cases: CaseResults) -> Figure:
+    """Compose a picture with the contact of each load case alone."""
+    shown, first = shown_cases(cases), next(iter(cases.results.values()))
+    columns, rows, height = _grid(shown, first)
+    figure = new_page(INCHES * min(1.0, columns / 3), rows * height)
+    grid = figure.add_gridspec(rows, columns)
+    draw_case_contacts([figure.add_subplot(grid[divmod(i, columns)]) for i in range(len(shown))], cases, shown)
+    return figure
+
+
+def panels_of(result: Result) -> tuple[str | None, ...]:
+    """Zones that have panels of their own; None alone where all zones share one."""
+    zones = result.contact.zone_names
+    return tuple(zones) if 1 < len(zones) <= PANELS else (None,)
+
+
+def shown_cases(cases: CaseResults) -> list[str]:
+    """Names of the load cases that have pictures of their own: all, or those with the largest forces."""
+    if next(iter(cases.results.values())).boundary is None:
+        return []
+    weight = {
+        name: sum(np.hypot(*force) for force in result.footprint.forces.values())
+        for name, result in cases.results.items()
+    }
+    most = sorted(weight, key=lambda name: -weight[name])[:MOST]
+    return [name for name in cases.results if name in most]
+
+
+def _grid(shown: Sequence[str], first: Result) -> tuple[int, int, float]:
+    """Columns, rows, and inches of a row of the pictures of so many load cases."""
+    if not shown or first.boundary is None:
+        return 1, 0, 0.0
+    width, height = body_extent(first.boundary)
+    columns = min(len(shown), 2 if width > 2 * WIDE * height else 3)
+    return columns, -(-len(shown) // columns), float(np.clip(0.9 * INCHES / columns * height / width + 1.0, 2.0, 4.5))
+
+
+def draw_case_contacts(places: Sequence[Axes], cases: CaseResults, shown: Sequence[str]) -> None:
+    """Draw the contact of load cases; the fans of all have one scale.
+
+    If the only zone is small beside the body in all of them, close-ups are drawn.
+    """
+    results = [cases.results[name] for name in shown]
+    scale, zones = common_scale(results), results[0].contact.zone_names if results else ()
+    near = len(zones) == 1 and all(close_ups(result, TINY) for result in results if result.touching.any())
+    for axes, name in zip(places, shown, strict=True):
+        result = cases.results[name]
+        axes.set_title(f"{short_label(name, 30)}: {_peak(result)}", loc="left", fontsize=10)
+        sketch_contact(axes, result, zones[0] if near else None, scale)  # there is no room for more numbers
+        if not near:
+            axes.set(xticks=[], yticks=[], xlabel="", ylabel="")
+            axes.spines[:].set_visible(False)
+
+
+def _peak(result: Result) -> str:
+    """The largest pressure of a load case in few words."""
+    peak = result.footprint.peak
+    if result.accuracy.infinite:
+        return f"infinite in {', '.join(short_label(zone, 20) for zone in result.accuracy.infinite)}"
+    if peak is None:
+        return "no contact"
+    return with_unit(with_bar(peak.pressure, result.accuracy.peak_bar()), plain(units_of(result.contact).stress))
+
+
+def draw_case_pressures(axes: Axes, cases: CaseResults, zone: str | None = None) -> None:
+    """Draw the contact pressure of each load case over the distance along a zone, or along each, with the envelope."""
+    results = cases.results
+    first, touching = next(iter(results.values())), np.any([it.touching for it in results.values()], axis=0)
+    here = of_zone(first.contact, zone)
+    pieces = [piece for piece in pieces_of(first.contact, touching) if here[piece.index[0]]]
+    largest = np.max([np.maximum(it.solution.pressure, 0.0) for it in results.values()], axis=0)
+    for order, piece in enumerate(pieces):
+        axes.fill_between(
+            piece.arc, largest[piece.index], color=GREY, alpha=0.18, linewidth=0, zorder=1,
+            label=None if order or len(results) == 1 else ENVELOPE,
+        )  # fmt: skip
+    for order, (name, result) in enumerate(results.items()):
+        color = PIECE_COLOURS[order % len(PIECE_COLOURS)]
+        width = 2.2 if order < len(PIECE_COLOURS) else 1.2
+        for number, piece in enumerate(pieces):
+            label, dashes = None if number else short_label(name, 30), DASHES[number % len(DASHES)]
+            pressure = result.solution.pressure[piece.index]
+            axes.plot(piece.arc, pressure, color=color, linestyle=dashes, linewidth=width, label=label)
+    if len(pieces) > 1:
+        labels = [f"{DASHES[number % len(DASHES)]}: {piece.label}" for number, piece in enumerate(pieces)]
+        axes.set_title("; ".join(labels), loc="left", fontsize=9, color=GREY)
+    elif zone is not None:
+        axes.set_title(short_label(zone, 40), loc="left", fontsize=10)
+    axes.axhline(0, color=GREY, linewidth=0.8)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.set_xlabel(distance_label(first.contact, pieces))
+    axes.set_ylabel(labeled("pressure", units_of(first.contact).stress) + "\nper undeformed length")
+    show_around(axes, pieces, [*results.values()], largest)
+    axes.legend(frameon=False, fontsize=8.5, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    infinite = [name for name in cases.infinite if zone is None or zone in results[name].accuracy.infinite]
+    if infinite:
+        tops = (
+            ceiling(it.contact, it.solution.pressure, it.accuracy.infinite)
+            or 1.18 * float(it.solution.pressure[here].max(initial=0.0))
+            for it in results.values()
+        )
+        zones = dict.fromkeys(name for it in results.values() for name in it.accuracy.infinite if zone in (None, name))
+        cut_off(axes, max(tops), [*zones])
