@@ -96,6 +96,8 @@ class Footprint(WithHints):
     """Resultant of the contact pressure."""
     forces: dict[str, Pair]
     """Force (x, y) of the rigid surface of each zone on the body, Σ w p n, per thickness [p L]."""
+    moments: dict[str, float]
+    """Moment of each of these forces about the origin, counterclockwise, per thickness [p L²]."""
 
 
 class FootprintRecord(Record):
@@ -107,6 +109,8 @@ class FootprintRecord(Record):
     """Its moment about the origin, counterclockwise, per thickness [p L²]."""
     forces: dict[str, Pair]
     """Force (x, y) of the rigid surface of each zone on the body, per thickness [p L]."""
+    moments: dict[str, float]
+    """Moment of each of these forces about the origin, counterclockwise, per thickness [p L²]."""
     intervals: tuple[ContactInterval, ...]
     """Contact intervals, zone by zone; empty without contact."""
     peak: Peak | None
@@ -119,6 +123,7 @@ def footprint_record(footprint: Footprint) -> FootprintRecord:
         resultant=footprint.resultant.force,
         resultant_moment=footprint.resultant.moment,
         forces=footprint.forces,
+        moments=footprint.moments,
         intervals=footprint.intervals,
         peak=footprint.peak,
     )
@@ -145,6 +150,7 @@ def footprint(contact: CondensedContact, solution: ContactSolution, *, infinite:
             name: (x, y)
             for name, (x, y) in zip(contact.zone_names, contact.resultants(solution.pressure).tolist(), strict=True)
         },
+        moments=dict(zip(contact.zone_names, contact.moments(solution.pressure).tolist(), strict=True)),
     )
 
 

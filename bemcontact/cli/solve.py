@@ -22,6 +22,10 @@ def solve(
         Path | None,
         typer.Option("--vtk", metavar="FILE", help="Write the boundary; ends in .vtu or .vtk.", show_default=False),
     ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Write a page with pictures, and tables.", show_default=False),
+    ] = None,
 ) -> None:
     """Compute the contact pressure, assess it, and print a table.
 
@@ -31,10 +35,14 @@ def solve(
     the spec, errors are not assessed. The exit status is 0 only if the solution of the equations is certified, and the
     accuracy is met.
 
+    FOLDER gets result.html (one page with pictures, to read and to send on), zones.csv, points.csv, result.json,
+    figures/ and spec.yaml; an earlier result there is replaced.
+
     If a spec has load cases, all of them and all combinations are solved; --case selects one.
 
     Examples
       bemcontact solve models/cylinder_on_plane.yaml
+      bemcontact solve models/cylinder_on_plane.yaml --out roller
       bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
       bemcontact solve models/bolt_in_plate.yaml --set material.young_modulus=2e6
       bemcontact solve models/cylinder_on_plane.yaml --accuracy 0.001
@@ -55,6 +63,11 @@ def solve(
                 from bemcontact.report import figures
 
                 figures.save(figures.figure_of(results), figure)
+            if out:
+                report("report", "")
+                from bemcontact.report import folder
+
+                folder.save_result(results, out, source.as_run())
 
         problem = source.problem(refine)
         with by_option("--start"):
@@ -86,4 +99,4 @@ def solve(
             verdict=shortfall(result),
         )
 
-    run("solving", work, source=source, files={"--figure": figure, "--vtk": vtk_file}, json_file=json_file)
+    run("solving", work, source=source, files={"--figure": figure, "--vtk": vtk_file}, folder=out, kind="result", json_file=json_file)

@@ -383,6 +383,13 @@ class CondensedContact(WithHints, MotionAlgebra):
         with np.errstate(invalid="ignore"):  # as in forces
             return (p[..., None, :] * self.weights_by_zone) @ self.normals
 
+    def moments(self, pressure: Array) -> Array:
+        """Moments (..., zones) [p L²] of these forces about the origin, counterclockwise, from p (..., n) [p]."""
+        p = self._by_point(pressure, "pressure", 0)
+        levers = self.points[:, 0] * self.normals[:, 1] - self.points[:, 1] * self.normals[:, 0]
+        with np.errstate(invalid="ignore"):  # as in forces
+            return (p[..., None, :] * self.weights_by_zone) @ levers
+
     @property
     def weights_by_zone(self) -> Array:
         """The weights (zones, n) in each zone [L]: zero for points of other zones."""

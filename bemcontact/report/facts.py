@@ -118,7 +118,7 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
     for bar in bars_of(record, "displacement"):
         place = bar["at"] and f", at {vector(bar['at'], units.length, scale=size)}"
         yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most{place or ''}"
-    force, error = total_force(record, units), size * sum(_force_errors(record) or (0.0,))
+    force, error = total_force(record, units), size * sum(force_errors(record) or (0.0,))
     moment = zero_if_negligible(record["resultant_moment"], pressed * size)
     known = error / abs(moment) if moment and error else None
     moment = with_unit(without_digits_beyond(moment, known), units.line_moment)
@@ -238,7 +238,7 @@ def _tool(record: JsonObject, tool: JsonObject, size: float, pressed: float, mov
     turned = with_unit(with_bar(turn, _bar_of_motion(record, "rotation", tool["name"])), "rad")
     components = zip(tool["force_of_body"], tool["free"][:2], strict=True)
     is_load = all(free or not zero_if_negligible(component, pressed) for component, free in components)
-    errors = [_force_errors(record, zone) for zone in tool["zones"]]
+    errors = [force_errors(record, zone) for zone in tool["zones"]]
     error = None if is_load or [] in errors else sum(map(sum, errors))
     force = vector_with_error(tool["force_of_body"], error or None, units.line_force, pressed)
     moment = zero_if_negligible(tool["moment_of_body"], pressed * size)
@@ -324,11 +324,11 @@ def _force(components: tuple[float, float], record: JsonObject, zone: str | None
     unit, pressed = units.line_force, pressed_by(record)
     if zone is None and {*TRANSLATIONS} <= {*record["motion_names"]}:
         return vector(components, unit, scale=pressed)
-    errors = _force_errors(record, zone)
+    errors = force_errors(record, zone)
     return vector_with_error(components, sum(errors) if errors else None, unit, pressed)
 
 
-def _force_errors(record: JsonObject, zone: str | None = None) -> list[float]:
+def force_errors(record: JsonObject, zone: str | None = None) -> list[float]:
     """Errors of the force of a zone, or of all that press [p L]; none if one of them is not known."""
     bars = [bar for bar in bars_of(record, "force") if zone in (bar["zone"], None) and bar["value"]]
     known = [abs(bar["value"]) * bar["bar"] for bar in bars if bar["bar"] is not None]

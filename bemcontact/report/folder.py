@@ -1,4 +1,4 @@
-"""Folders of mesh studies, reproductions and paths; a folder is written completely or not at all."""
+"""Folders of results, mesh studies, reproductions, paths and studies; a folder is written completely or not at all."""
 
 import json
 import re
@@ -8,19 +8,23 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.mesh_study import MeshStudy
 from bemcontact.analysis.reproduction import Reproduction
+from bemcontact.analysis.result import Result
 from bemcontact.files import output
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.report import page, study_page
+from bemcontact.report import page, result_page, study_page
 from bemcontact.report import reproduction as paper_page
 from bemcontact.report.figures import (
     figure_of_path,
     figures_of,
     figures_of_reproduction,
     figures_of_study,
+    pictures_of,
     vector_graphic,
 )
+from bemcontact.report.zones import tables_of
 from bemcontact.studies.journal import JOURNAL, is_journal
 from bemcontact.studies.table import StudyTable
 
@@ -51,6 +55,15 @@ REPORT = Contents(
     keys=frozenset({"settings", "levels", "convergence", "versions"}),
 )
 """Folder of a mesh study."""
+RESULT = Contents(
+    title="result",
+    page="result.html",
+    numbers="result.json",
+    others=("zones.csv", "points.csv", "spec.yaml"),
+    picture=re.compile(r"(problem|contacts|deformed|(contact|pressure|gap)(-\d+)?)\.svg"),
+    keys=frozenset({"name", "version", "certified"}),
+)
+"""Folder of a result, or of all load cases."""
 REPRODUCTION = Contents(
     title="reproduction",
     page="page.html",
@@ -78,7 +91,7 @@ STUDY = Contents(
     journal=JOURNAL,
 )
 """Folder of a study of parameters."""
-KINDS = {kind.title: kind for kind in (REPORT, REPRODUCTION, PATH, STUDY)}
+KINDS = {kind.title: kind for kind in (REPORT, RESULT, REPRODUCTION, PATH, STUDY)}
 """Title -> kind of folder."""
 
 
@@ -111,6 +124,17 @@ def save(study: MeshStudy, folder: Path, spec: str | None = None) -> None:
         study.finest.comparison.contact.save(temporary / "contact.npz")
         if spec is not None:
             (temporary / "spec.yaml").write_text(spec, encoding="utf-8", newline="\n")
+
+
+def save_result(results: Result | CaseResults, folder: Path, spec: str | None = None) -> None:
+    """Write a result, or those of all load cases, as a folder: page, numbers, tables, pictures, spec if given."""
+    ensure_folder_writable(folder, RESULT)
+    pictures = {name: vector_graphic(figure) for name, figure in pictures_of(results).items()}
+    text = result_page.render(results, pictures, spec)
+    with _written(folder, RESULT, text, results.to_json(), pictures) as temporary:
+        tables = tables_of(results) if spec is None else {**tables_of(results), "spec.yaml": spec}
+        for name, content in tables.items():
+            (temporary / name).write_text(content, encoding="utf-8", newline="\n")
 
 
 def save_reproduction(reproduction: Reproduction, folder: Path) -> None:

@@ -6,7 +6,7 @@ Each ``draw_...`` function draws into axes that it is given; each ``figure_of_..
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
 from bemcontact.report.figures.contact import close_ups, draw_contact, draw_deformed
 from bemcontact.report.figures.design import draw_relief, draw_relieved_pressure, figure_of_design
-from bemcontact.report.figures.load_cases import draw_case_pressures, figure_of, figure_of_cases
+from bemcontact.report.figures.load_cases import draw_case_pressures, figure_of, figure_of_cases, pictures_of
 from bemcontact.report.figures.mesh_study import draw_convergence, draw_history, figures_of
 from bemcontact.report.figures.page import FORMATS, ensure_known_format, save, vector_graphic
 from bemcontact.report.figures.path import draw_interval_ends, draw_peaks, draw_resultants, figure_of_path
@@ -50,6 +50,7 @@ __all__ = [
     "figures_of",
     "figures_of_reproduction",
     "figures_of_study",
+    "pictures_of",
     "save",
     "vector_graphic",
 ]

@@ -130,7 +130,7 @@ def sketch_contact(
     part = zone is not None and bool(fans)
     window = np.concatenate(loops)
     if zone is not None and fans:
-        window = _around(_nearest(fans, zone, max(body_extent(state))), window)
+        window = _around(_nearest(fans, zone, max(body_extent(state))))
     width, height = np.ptp(window, axis=0)
     size = float(np.hypot(width, height))
     reach = size if part else OVERHANG * size
@@ -237,11 +237,10 @@ def _nearest(fans: Sequence[Fan], zone: str, size: float) -> Array:
     return feet if np.ptp(feet, axis=0).max() < CLOSE * size else max(own, key=lambda fan: fan.peak).feet
 
 
-def _around(feet: Array, body: Array) -> Array:
-    """Corners (2, 2) of the part of the body around a contact."""
-    extent = float(np.ptp(feet, axis=0).max())
-    around = np.stack([feet.min(axis=0) - AROUND * extent, feet.max(axis=0) + AROUND * extent])
-    return np.clip(around, body.min(axis=0), body.max(axis=0))
+def _around(feet: Array) -> Array:
+    """Corners (2, 2) of the square around a contact."""
+    middle, extent = (feet.min(axis=0) + feet.max(axis=0)) / 2, float(np.ptp(feet, axis=0).max())
+    return middle + np.array([[-1.0], [1.0]]) * (0.5 + AROUND) * extent
 
 
 def _label(fan: Fan, tips: Array, text: str, *, cut: bool) -> Name:

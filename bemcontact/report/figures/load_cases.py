@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.report.bars import with_bar
-from bemcontact.report.figures.contact import body_extent, close_ups, common_scale, sketch_contact
+from bemcontact.report.figures.contact import body_extent, close_ups, common_scale, draw_contact, draw_deformed, sketch_contact
+from bemcontact.report.figures.mesh_study import plan_of
 from bemcontact.report.figures.page import (
     GREY,
     PIECE_COLOURS,
@@ -17,13 +18,24 @@ from bemcontact.report.figures.page import (
     cut_off,
     distance_label,
     labeled,
+    legend_below,
     new_page,
     pieces_of,
     plain,
     short_label,
     wrapped,
 )
-from bemcontact.report.figures.result import PANELS, ROW, WIDE, entitle, figure_of_result, of_zone, show_around
+from bemcontact.report.figures.result import (
+    PANELS,
+    ROW,
+    WIDE,
+    draw_gap,
+    draw_pressure,
+    entitle,
+    figure_of_result,
+    of_zone,
+    show_around,
+)
 from bemcontact.report.formatting import units_of, with_unit
 from bemcontact.report.verdicts import case_verdicts
 
@@ -161,3 +173,52 @@ def draw_case_pressures(axes: Axes, cases: CaseResults, zone: str | None = None)
         )
         zones = dict.fromkeys(name for it in results.values() for name in it.accuracy.infinite if zone in (None, name))
         cut_off(axes, max(tops), [*zones])
+
+
+WIDTH = 5.4
+"""Inches of a picture on a page: its text can be read on a telephone, and two stand side by side."""
+
+
+def pictures_of(results: Result | CaseResults) -> dict[str, Figure]:
+    """Make the pictures for the page of a result or of all load cases, by name.
+
+    Names are "problem" and "contact" or "contacts" (if a body is known), "deformed" of a result, and for each zone
+    "pressure-1", "gap-1", or "contact-1" if it needs a close-up; "pressure" if there are too many zones.
+    """
+    first = results if isinstance(results, Result) else next(iter(results.results.values()))
+    figures, near = dict[str, Figure](), [] if isinstance(results, CaseResults) else close_ups(results)
+    if first.problem is not None:
+        figures["problem"] = plan_of(first.problem)
+    if isinstance(results, CaseResults):
+        if shown_cases(results):
+            figures["contacts"] = figure_of_contacts(results)
+    elif first.boundary is not None:
+        figures["contact"], axes = _page(first)
+        draw_contact(axes, first)
+        figures["deformed"], axes = _page(first)
+        draw_deformed(axes, first)
+    zones = [*first.contact.zone_names]
+    for zone in panels_of(first):
+        number = f"-{zones.index(zone or zones[0]) + 1}" if zone or len(zones) == 1 else ""
+        if (zone or zones[0]) in near and number:
+            figures[f"contact{number}"], axes = _page()
+            draw_contact(axes, first, zone or zones[0])
+        figures[f"pressure{number}"], axes = _page(height=3.6)
+        if isinstance(results, CaseResults):
+            draw_case_pressures(axes, results, zone)
+            legend_below(axes)
+            continue
+        draw_pressure(axes, results, zone)
+        figures[f"gap{number}"], axes = _page(height=3.6)
+        draw_gap(axes, results, zone)
+    return figures
+
+
+def _page(result: Result | None = None, height: float = 4.2) -> tuple[Figure, Axes]:
+    """A picture for one axes; that of a long body is wide."""
+    width = WIDTH
+    if result is not None and result.boundary is not None:
+        across, up = body_extent(result.boundary)
+        width, height = (1.8 * WIDTH, 3.4) if across > 2.5 * up else (WIDTH, 4.4)
+    figure = new_page(width, height)
+    return figure, figure.add_subplot()

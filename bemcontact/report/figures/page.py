@@ -64,8 +64,12 @@ def save(figure: Figure, path: Path) -> None:
 
 def _picture(figure: Figure, settings: Any, **form: Any) -> bytes:
     """Draw a figure as the content of a file, without hidden characters in its texts."""
+    with without_glyph_warnings():
+        figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # names stand beside what they name, and the file shows all of them
     for text in figure.findobj(Text):
         text.set_text(escaped_lines(text.get_text()))
+        text.set_in_layout(True)
     stream = BytesIO()
     with rc_context({"svg.hashsalt": "bemcontact"}), rc_context(settings), without_glyph_warnings():
         figure.savefig(stream, bbox_inches="tight", **form)

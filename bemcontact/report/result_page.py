@@ -1,0 +1,146 @@
+"""The page of a result, or of the results of all load cases: what was asked, the answer, what to rely on."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from bemcontact.analysis.load_cases import CaseResults
+from bemcontact.analysis.result import Result
+from bemcontact.problem import Problem, Units
+from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, bars_of, mesh_in_short, with_bar
+from bemcontact.report.facts import contact_intervals, coordinate_size, facts, peak_of, peak_place, total_force
+from bemcontact.report.formatting import JsonObject, sentence_case, surface_in_words, units_of, vector, with_unit
+from bemcontact.report.page import picture, template
+from bemcontact.report.verdicts import case_verdicts, overall, result_verdicts
+from bemcontact.report.zones import by_case, zone_rows
+from bemcontact.version import __version__
+
+NOT_LOOKED_AT = (
+    "Friction, wear, plasticity, dynamics, and everything that is not plane: the model has none of them. The rigid "
+    "surfaces do not yield. Whether the input is that of your part: compare the picture of the problem with it."
+)
+"""What no verdict covers."""
+ZONE_PICTURES = {"contact": "close-up of the contact", "pressure": "pressure", "gap": "gap"}
+"""Kind of a picture of one zone -> its caption."""
+CAPTIONS = {
+    "problem": "What was asked: the body, what holds and loads it, and the rigid surfaces",
+    "contact": "Where the body touches, and how hard; displacements are to scale",
+    "contacts": "Where the body touches in each load case; all pressures have one scale",
+    "deformed": "The deformed shape; the surfaces move with the magnification",
+}
+"""Name of a picture -> its caption."""
+
+
+def render(results: Result | CaseResults, pictures: Mapping[str, bytes], spec: str | None) -> str:
+    """Write the page of a result, or of all load cases, as HTML that needs no other file.
+
+    `pictures` are SVG files by name as of `figures.pictures_of`, and `spec` is the text of the spec as run.
+    """
+    cases = by_case(results)
+    first = next(iter(cases.values()))
+    verdicts = result_verdicts(results) if isinstance(results, Result) else case_verdicts(results)
+    units, alone = units_of(first.contact), first.to_dict() if isinstance(results, Result) else None
+    return template("result.html").render(
+        name=first.contact.name if isinstance(results, Result) else results.name,
+        version=__version__,
+        description=_paragraphs(first.problem),
+        formulation=first.solution.formulation,
+        verdicts=verdicts,
+        overall=overall(verdicts),
+        headline=[*_headline(alone, units)] if alone else [],
+        details=[*facts(alone, units)] if alone else [],
+        cases=[_case(name, result, units) for name, result in cases.items()] if not alone else [],
+        zones=[(name, row) for name, result in cases.items() for row in zone_rows(result.to_dict(), units)],
+        envelope=[*_envelope(cases, units)] if not alone else [],
+        bars=[*accuracy_rows(alone["accuracy"], units)] if alone else [],
+        bars_are=BARS_ARE,
+        surfaces=_surfaces(first.problem),
+        notes=[*_notes(cases)],
+        infinite=any(result.accuracy.infinite for result in cases.values()),
+        assessed=any(result.accuracy.met is not None for result in cases.values()),
+        not_looked_at=NOT_LOOKED_AT,
+        pictures=[_picture(name, svg, first) for name, svg in pictures.items()],
+        spec=spec,
+    )
+
+
+def _paragraphs(problem: Problem | None) -> list[str]:
+    """The description of a problem, paragraph by paragraph."""
+    parts = "" if problem is None else problem.description
+    return [" ".join(part.split()) for part in parts.split("\n\n") if part.strip()]
+
+
+def _surfaces(problem: Problem | None) -> list[tuple[str, str, str]]:
+    """Name, edges and rigid surface of each contact zone."""
+    if problem is None:
+        return []
+    zones = problem.contact_zones.items()
+    return [(name, ", ".join(problem.edges_of(name)), surface_in_words(zone.surface)) for name, zone in zones]
+
+
+def _headline(record: JsonObject, units: Units) -> Iterator[tuple[str, str, str]]:
+    """Name, value and remark of the numbers at the head of the page."""
+    place = peak_place(record, units)
+    at = f"{'' if place.startswith('all along') else 'at '}{place}, " if place else ""
+    yield "Peak pressure", peak_of(record, units), f"{at}per undeformed length"
+    touching = [*contact_intervals(record, units, short=True)]
+    if len(touching) == 1:
+        yield "Contact", touching[0][1].split(", ends")[0], f"long, in {touching[0][0]}"
+    elif touching:
+        yield "Contact", f"{len(touching)} places", f"in {', '.join(dict.fromkeys(zone for zone, _ in touching))}"
+    yield "Force on the body", total_force(record, units), "of all surfaces"
+    for bar in bars_of(record, "displacement"):
+        where = bar["at"] and f"at {vector(bar['at'], units.length, scale=coordinate_size(record))}"
+        yield "Largest displacement", with_unit(with_bar(bar["value"], bar["bar"]), units.length), where or ""
+
+
+def _case(name: str, result: Result, units: Units) -> dict[str, Any]:
+    """A row in the table of load cases."""
+    record, verdicts = result.to_dict(), result_verdicts(result)
+    return {
+        "name": name,
+        "equations": verdicts[0].word,
+        "mesh": mesh_in_short(record["accuracy"]),
+        "quality": overall(verdicts),
+        "peak": peak_of(record, units) if record["intervals"] else "no contact",
+        "place": peak_place(record, units) or NOTHING,
+        "force": total_force(record, units),
+    }
+
+
+def _envelope(cases: Mapping[str, Result], units: Units) -> Iterator[tuple[str, str, str, str]]:
+    """Zone, largest peak of all load cases, the load case, and the place."""
+    first = next(iter(cases.values()))
+    for number, zone in enumerate(first.contact.zone_names):
+        infinite = [name for name, result in cases.items() if zone in result.accuracy.infinite]
+        if infinite:
+            yield zone, "infinite", ", ".join(infinite), NOTHING
+            continue
+        own = (first.contact.zone == number).nonzero()[0]
+        most = max(cases, key=lambda name: float(cases[name].solution.pressure[own].max()))
+        result = cases[most]
+        highest = own[int(result.solution.pressure[own].argmax())]
+        largest = float(result.solution.pressure[highest])
+        x, y = result.contact.points[highest].tolist()
+        place = vector((x, y), units.length, scale=float(abs(result.contact.points).max()))
+        bar = result.accuracy.peak_bar(zone)
+        if largest > 0:
+            yield zone, with_unit(with_bar(largest, bar), units.stress), most, place
+        else:
+            yield zone, "no contact", NOTHING, NOTHING
+
+
+def _notes(cases: Mapping[str, Result]) -> Iterator[str]:
+    """Notes of all results as sentences, each once, with the load cases that have it if not all have."""
+    for note in dict.fromkeys(note for result in cases.values() for note in result.notes):
+        names = [name for name, result in cases.items() if note in result.notes]
+        where = "" if len(names) == len(cases) else f"{', '.join(names)}: "
+        yield f"{where}{sentence_case(note)}."
+
+
+def _picture(name: str, svg: bytes, first: Result) -> Any:
+    """A picture with its caption and text alternative."""
+    kind, _, number = name.partition("-")
+    zones = first.contact.zone_names
+    of_zone = f"{zones[int(number) - 1]}: {ZONE_PICTURES[kind]}" if number else sentence_case(ZONE_PICTURES.get(kind, ""))
+    caption = of_zone if number or name not in CAPTIONS else CAPTIONS[name]
+    return name, picture(svg, caption, f"{first.contact.name}. {caption}.")

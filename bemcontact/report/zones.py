@@ -1,0 +1,136 @@
+"""Tables of the contact zones of a result, or of all load cases: in words for pages, and as CSV."""
+
+import csv
+import io
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from bemcontact.analysis.load_cases import CaseResults
+from bemcontact.analysis.result import Result
+from bemcontact.assessment.accuracy import ErrorBar
+from bemcontact.problem import Units
+from bemcontact.report.bars import NOTHING, JsonObject, bars_of, unit_of_bar, with_bar, without_digits_beyond
+from bemcontact.report.facts import contact_intervals, coordinate_size, force_errors, pressed_by, zone_forces
+from bemcontact.report.formatting import vector, with_unit, zero_if_negligible
+
+
+def by_case(results: Result | CaseResults) -> dict[str, Result]:
+    """Results by the name of their load case; a result alone has the name ""."""
+    return {"": results} if isinstance(results, Result) else results.results
+
+
+def zone_rows(record: JsonObject, units: Units) -> Iterator[dict[str, str]]:
+    """Write each zone of a record: where it touches, peak, force, moment about (0, 0), intensities.
+
+    The record is the JSON of a result. A zone that does not touch has a dash for its peak and intensity.
+    """
+    size, pressed = coordinate_size(record), pressed_by(record)
+    forces, places = zone_forces(record, units), [*contact_intervals(record, units, merged=True)]
+    for zone, force in forces.items():
+        own = [place for name, place in places if name == zone]
+        moment, errors = zero_if_negligible(record["moments"][zone], pressed * size), force_errors(record, zone)
+        known = size * sum(errors) / abs(moment) if moment and errors else None
+        yield {
+            "zone": zone,
+            "contact": "; ".join(own) or "nowhere",
+            "peak": _peak(record, zone, units) if own else NOTHING,
+            "force": force,
+            "moment": with_unit(without_digits_beyond(moment, known), units.line_moment),
+            "intensity": "; ".join(_intensities(record, zone, units)) or NOTHING,
+        }
+
+
+def _peak(record: JsonObject, zone: str, units: Units) -> str:
+    """The largest pressure of a zone with its error and place, or that it is infinite."""
+    bar = next((item for item in bars_of(record, "peak") if item["zone"] == zone), None)
+    if bar is not None and bar["value"] is None:
+        return "infinite"
+    own = [i for i, name in enumerate(record["zone"]) if name == zone]
+    highest = max(own, key=lambda i: record["pressure"][i])
+    place = vector(record["nodes"][highest], units.length, scale=coordinate_size(record))
+    value = with_bar(record["pressure"][highest], None if bar is None else bar["bar"])
+    return f"{with_unit(value, units.stress)} at {place}"
+
+
+def _intensities(record: JsonObject, zone: str, units: Units) -> Iterator[str]:
+    """Intensities K of the infinite pressures of a zone, each with its law and place."""
+    for bar in bars_of(record, "intensity"):
+        if bar["zone"] == zone and bar["value"] is not None:
+            value = with_unit(with_bar(bar["value"], bar["bar"]), unit_of_bar(bar, units))
+            yield f"K = {value} in {bar['note']} at {vector(bar['at'], units.length, scale=coordinate_size(record))}"
+
+
+def zones_csv(results: Result | CaseResults) -> str:
+    """Write a line for each contact interval, and for each zone without one, of each load case.
+
+    Errors are absolute, in the unit of the number before them; empty where there is no number.
+    """
+    header = (
+        "case zone interval start_x start_y end_x end_y end_error length length_error peak peak_error peak_x peak_y "
+        "force_x force_y force_error moment"
+    ).split()
+    return _written(header, (row for case, result in by_case(results).items() for row in _zone_lines(case, result)))
+
+
+def _zone_lines(case: str, result: Result) -> Iterator[list[Any]]:
+    """The lines of a result in `zones_csv`."""
+    contact, pressure = result.contact, result.solution.pressure
+    bars = {(bar.quantity, bar.zone, bar.interval): bar for bar in result.accuracy.bars}
+    for number, zone in enumerate(contact.zone_names):
+        own = np.flatnonzero(contact.zone == number)
+        peak = bars.get(("peak", zone, None))
+        highest = own[int(np.argmax(pressure[own]))]
+        infinite, touches = zone in result.accuracy.infinite, bool(pressure[highest] > 0)
+        at = contact.points[highest].tolist() if touches and not infinite else ["", ""]
+        value = "" if infinite else float(pressure[highest]) if touches else 0.0
+        force = result.footprint.forces[zone]
+        of_force = _error(bars.get(("force", zone, None)))
+        of_zone = [value, "" if infinite else _error(peak), *at, *force, of_force, result.footprint.moments[zone]]
+        intervals = [item for item in result.footprint.intervals if item.zone == zone]
+        for count, item in enumerate(intervals):
+            ends = [bars.get((quantity, zone, count)) for quantity in ("start", "end")]
+            known = [bar.bar * item.length for bar in ends if bar is not None and bar.bar is not None]
+            end_error = max(known) if len(known) == len(ends) else ""
+            length_error = _error(bars.get(("length", zone, count)))
+            yield [case, zone, count, *item.start, *item.end, end_error, item.length, length_error, *of_zone]
+        if not intervals:
+            yield [case, zone, *[""] * 7, *of_zone]
+
+
+def _error(bar: ErrorBar | None) -> float | str:
+    """Absolute error of a quantity; empty if it is not known."""
+    return "" if bar is None or bar.bar is None or bar.value is None else abs(bar.value) * bar.bar
+
+
+def points_csv(results: Result | CaseResults) -> str:
+    """Write a line for each contact point of each load case: place, normal, pressure, gap, and whether it touches."""
+    header = "case zone x y normal_x normal_y arc pressure gap touching".split()
+    return _written(header, (row for case, result in by_case(results).items() for row in _point_lines(case, result)))
+
+
+def _point_lines(case: str, result: Result) -> Iterator[list[Any]]:
+    """The lines of a result in `points_csv`, zone by zone and along the boundary."""
+    contact, solution = result.contact, result.solution
+    gap = contact.initial_gap + solution.displacement
+    for run in np.unique(contact.run).tolist():
+        for i in contact.points_of_run(run).tolist():
+            yield [
+                case, contact.zone_names[int(contact.zone[i])], *contact.points[i].tolist(), *contact.normals[i].tolist(),
+                float(contact.arc_position[i]), float(solution.pressure[i]), float(gap[i]), int(result.touching[i]),
+            ]  # fmt: skip
+
+
+def _written(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """CSV of a table."""
+    stream = io.StringIO()
+    table = csv.writer(stream, lineterminator="\n")
+    table.writerow(header)
+    table.writerows(rows)
+    return stream.getvalue()
+
+
+def tables_of(results: Result | CaseResults) -> Mapping[str, str]:
+    """All tables as CSV, by the names of their files."""
+    return {"zones.csv": zones_csv(results), "points.csv": points_csv(results)}
