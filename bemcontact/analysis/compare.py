@@ -73,7 +73,7 @@ def compare(
     read = ComparisonOptions.of(formulations, weights, penalties, **options)
     watch = Stopwatch(progress=progress)
     ensure_acting(problem)
-    return _compared(read, prepare(problem, watch, errors=False), watch).comparison
+    return compared_on(read, prepare(problem, watch, errors=False), watch).comparison
 
 
 def mesh_study(
@@ -111,9 +111,14 @@ def mesh_study(
             prepared = prepare(finer, watch, errors=parts == max(refine), singular=singular)
         if found:
             prepared = replace(prepared, accuracy=prepared.accuracy.knowing(found.accuracy))
-        level = _compared(options, prepared, watch)
+        level = compared_on(options, prepared, watch)
         levels.append(replace(level, refine=parts, outdated=outdated(problem, changes)))
-    settings = Settings(
+    return MeshStudy(settings=settings_of(options, changes), levels=tuple(levels))
+
+
+def settings_of(options: ComparisonOptions, changes: Sequence[str]) -> Settings:
+    """Options of a comparison as they act, and the changes made to the spec with --set."""
+    return Settings(
         formulations=options.formulations,
         weights=options.weights,
         penalties=tuple(dict.fromkeys(item.penalty for item in options.attempts if item.uses("penalty"))),
@@ -121,7 +126,6 @@ def mesh_study(
         seed=options.seed or 0,
         changes=tuple(changes),
     )
-    return MeshStudy(settings=settings, levels=tuple(levels))
 
 
 def outdated(problem: Problem | CondensedContact, changes: Sequence[str]) -> frozenset[str]:
@@ -143,7 +147,7 @@ def _prefixed(progress: Progress, prefix: str) -> Progress:
     return lambda stage, now: progress(prefix + stage, now)
 
 
-def _compared(options: ComparisonOptions, prepared: Prepared, watch: Stopwatch) -> MeshLevel:
+def compared_on(options: ComparisonOptions, prepared: Prepared, watch: Stopwatch) -> MeshLevel:
     """Compare on one mesh, and assess the direct solution with the boundary behind it."""
     contact = prepared.contact
     reference = _attempted(SolveOptions(formulation=FormulationName.COMPLEMENTARITY), options, contact, watch)

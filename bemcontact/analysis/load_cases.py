@@ -138,17 +138,24 @@ def solve_cases_with(options: SolveOptions, problem: Problem, progress: Progress
 
     All share one mesh, so that their results can be combined.
     """
-    ensure_kind(problem, Problem)
     options = with_start_read(options)
-    if not problem.load_cases:
-        raise ProblemError("the problem states no load cases; bemcontact.solve solves it as it is")
-    shared = Stopwatch(progress=progress)
-    on_mesh = mesh_of(problem.model_copy(update={"case": None}), shared)
-    results = {}
-    for name, accuracy in zip(problem.case_names, on_mesh.accuracies, strict=True):
-        watch, case = Stopwatch(progress=progress), on_mesh.condensation.acting(name)
+    shared, results = Stopwatch(progress=progress), {}
+    for name, prepared in prepared_cases(problem, shared).items():
+        watch = Stopwatch(progress=progress)
         with watch.stage(name):
-            solution, searches = solve_contact(case.contact, options)
-            prepared = Prepared(contact=case.contact, condensation=case, accuracy=accuracy)
+            solution, searches = solve_contact(prepared.contact, options)
             results[name] = assessed(prepared, solution, options.weights, watch, searches)
     return CaseResults(name=problem.name, results=results, seconds=shared.seconds)
+
+
+def prepared_cases(problem: Problem, watch: Stopwatch) -> dict[str, Prepared]:
+    """The problem under each load case and combination, condensed on one mesh with its errors under each."""
+    ensure_kind(problem, Problem)
+    if not problem.load_cases:
+        raise ProblemError("the problem states no load cases; bemcontact.solve solves it as it is")
+    on_mesh = mesh_of(problem.model_copy(update={"case": None}), watch)
+    prepared = {}
+    for name, accuracy in zip(problem.case_names, on_mesh.accuracies, strict=True):
+        case = on_mesh.condensation.acting(name)
+        prepared[name] = Prepared(contact=case.contact, condensation=case, accuracy=accuracy)
+    return prepared

@@ -88,6 +88,9 @@ def schema(
     path: Annotated[bool, typer.Option("--path", help="The schema of the JSON that path writes.")] = False,
     study: Annotated[bool, typer.Option("--study", help="The schema of study.json, which study writes.")] = False,
     report: Annotated[bool, typer.Option("--report", help="The schema of report.json, which compare writes.")] = False,
+    case_report: Annotated[
+        bool, typer.Option("--case-report", help="The schema of report.json, which compare writes of all load cases.")
+    ] = False,
     reproduction: Annotated[
         bool, typer.Option("--reproduction", help="The schema of numbers.json, which reproduce writes.")
     ] = False,
@@ -108,11 +111,13 @@ def schema(
             "path": path,
             "study": study,
             "report": report,
+            "case_report": case_report,
             "reproduction": reproduction,
         }
         kinds = [kind for kind, wanted in options.items() if wanted]
         if len(kinds) > 1:
-            refuse(f"{' and '.join(f'--{kind}' for kind in kinds)} are different schemas; choose one")
+            chosen = " and ".join(f"--{kind.replace('_', '-')}" for kind in kinds)
+            refuse(f"{chosen} are different schemas; choose one")
         if kinds:
             from bemcontact.report.schema import schema as schema_of_result
 

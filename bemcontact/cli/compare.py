@@ -1,13 +1,14 @@
 """The command compare."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from bemcontact.cli.arguments import JsonOption, Source, by_option, names, option, several
 from bemcontact.cli.command import CommandOutput, run
 from bemcontact.cli.terminal import Report
+from bemcontact.errors import OptionError
 from bemcontact.options import ComparisonOptions
 
 DEFAULT = ComparisonOptions()
@@ -35,8 +36,10 @@ def compare(
     with the direct solution of the complementarity problem; objectives, residuals and certificates of all are
     recomputed. The exit status is 0 only if all of them are certified, and the mesh is as accurate as was asked.
 
-    FOLDER gets report.html (one file, pictures inside), report.json, figures/, contact.npz and spec.yaml; an earlier
-    report there is replaced.
+    If a spec has load cases, all of them and all combinations are compared, on one mesh; --case selects one.
+
+    FOLDER gets report.html (one file, pictures inside), report.json, figures/ and spec.yaml, and contact.npz, or of
+    load cases zones.csv and points.csv; an earlier report there is replaced.
 
     Examples
       bemcontact compare models/cylinder_on_plane.yaml
@@ -59,7 +62,10 @@ def compare(
             with by_option(f"--{'penalty' if name == 'penalties' else name}"):
                 ComparisonOptions.of(**{name: value})
         options = ComparisonOptions.of(names(formulations), names(weights), penalties, starts=starts, seed=seed)
-        study = comparing.mesh_study(options, source.problem(), parts, report, source.changes)
+        problem = source.problem()
+        if problem.load_cases and problem.case is None:
+            return _cases(source, options, problem, parts, out, report)
+        study = comparing.mesh_study(options, problem, parts, report, source.changes)
         if out:
             report("report", "")
             from bemcontact.report import folder
@@ -73,3 +79,27 @@ def compare(
         )
 
     run("reading", work, source=source, folder=out, json_file=json_file)
+
+
+def _cases(
+    source: Source, options: ComparisonOptions, problem: Any, refine: list[int], out: Path | None, report: Report
+) -> CommandOutput:
+    """Compare formulations under all load cases."""
+    from bemcontact.analysis.case_comparisons import compare_cases
+    from bemcontact.report import case_text
+    from bemcontact.report.verdicts import case_comparisons_shortfall
+
+    if len(refine) > 1:
+        raise OptionError("--refine compares the meshes of one load case; name it with --case")
+    comparisons = compare_cases(options, problem.refined(*refine), report, tuple(source.changes))
+    if out:
+        report("report", "")
+        from bemcontact.report import folder
+
+        folder.save_cases(comparisons, out, source.as_run())
+    return CommandOutput(
+        summary=lambda: case_text.case_comparisons_summary(comparisons),
+        json=comparisons.to_json,
+        holds=comparisons.holds is not False,
+        verdict=case_comparisons_shortfall(comparisons),
+    )

@@ -55,7 +55,7 @@ def solve(
     def work(report: Report) -> CommandOutput:
         from bemcontact.analysis import load_cases
         from bemcontact.analysis import solve as analysis
-        from bemcontact.report import text
+        from bemcontact.report import case_text, text
         from bemcontact.report.verdicts import shortfall
 
         def draw(results: analysis.Result | load_cases.CaseResults) -> None:
@@ -78,7 +78,7 @@ def solve(
             results = load_cases.solve_cases_with(read, problem, report)
             draw(results)
             return CommandOutput(
-                summary=lambda: text.cases_summary(results),
+                summary=lambda: case_text.cases_summary(results),
                 json=results.to_json,
                 holds=results.holds is not False,
                 verdict=shortfall(results),
@@ -99,4 +99,12 @@ def solve(
             verdict=shortfall(result),
         )
 
-    run("solving", work, source=source, files={"--figure": figure, "--vtk": vtk_file}, folder=out, kind="result", json_file=json_file)
+    run(
+        "solving",
+        work,
+        source=source,
+        files={"--figure": figure, "--vtk": vtk_file},
+        folder=out,
+        kind="result",
+        json_file=json_file,
+    )

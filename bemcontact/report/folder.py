@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.mesh_study import MeshStudy
 from bemcontact.analysis.reproduction import Reproduction
@@ -50,11 +51,13 @@ REPORT = Contents(
     title="report",
     page="report.html",
     numbers="report.json",
-    others=("contact.npz", "spec.yaml"),
-    picture=re.compile(r"(problem|pressure|gap|deformed|difference|convergence|history-[a-z0-9-]+)\.svg"),
-    keys=frozenset({"settings", "levels", "convergence", "versions"}),
+    others=("contact.npz", "zones.csv", "points.csv", "spec.yaml"),
+    picture=re.compile(
+        r"(problem|contacts|(pressure|gap)(-\d+)?|deformed|difference|convergence|history-[a-z0-9-]+)\.svg"
+    ),
+    keys=frozenset({"settings", "versions"}),
 )
-"""Folder of a mesh study."""
+"""Folder of a mesh study, or of the comparisons under all load cases."""
 RESULT = Contents(
     title="result",
     page="result.html",
@@ -132,9 +135,24 @@ def save_result(results: Result | CaseResults, folder: Path, spec: str | None = 
     pictures = {name: vector_graphic(figure) for name, figure in pictures_of(results).items()}
     text = result_page.render(results, pictures, spec)
     with _written(folder, RESULT, text, results.to_json(), pictures) as temporary:
-        tables = tables_of(results) if spec is None else {**tables_of(results), "spec.yaml": spec}
-        for name, content in tables.items():
-            (temporary / name).write_text(content, encoding="utf-8", newline="\n")
+        _write_tables(results, temporary, spec)
+
+
+def save_cases(comparisons: CaseComparisons, folder: Path, spec: str | None = None) -> None:
+    """Write comparisons under all load cases as a folder: page, numbers, tables, pictures, spec if given."""
+    ensure_folder_writable(folder)
+    answers = comparisons.answers
+    pictures = {name: vector_graphic(figure) for name, figure in pictures_of(answers).items()}
+    text = result_page.render(answers, pictures, spec, comparisons)
+    with _written(folder, REPORT, text, comparisons.to_json(), pictures) as temporary:
+        _write_tables(answers, temporary, spec)
+
+
+def _write_tables(results: Result | CaseResults, folder: Path, spec: str | None) -> None:
+    """Write the tables of results, and the spec if given."""
+    tables = tables_of(results) if spec is None else {**tables_of(results), "spec.yaml": spec}
+    for name, content in tables.items():
+        (folder / name).write_text(content, encoding="utf-8", newline="\n")
 
 
 def save_reproduction(reproduction: Reproduction, folder: Path) -> None:

@@ -3,11 +3,13 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
+from bemcontact.assessment.contender import OUTCOMES
 from bemcontact.problem import Problem, Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, bars_of, mesh_in_short, with_bar
-from bemcontact.report.facts import contact_intervals, coordinate_size, facts, peak_of, peak_place, total_force
+from bemcontact.report.facts import contact_intervals, coordinate_size, facts, peak_of, peak_place, small, total_force
 from bemcontact.report.formatting import JsonObject, sentence_case, surface_in_words, units_of, vector, with_unit
 from bemcontact.report.page import picture, template
 from bemcontact.report.verdicts import case_verdicts, overall, result_verdicts
@@ -30,10 +32,16 @@ CAPTIONS = {
 """Name of a picture -> its caption."""
 
 
-def render(results: Result | CaseResults, pictures: Mapping[str, bytes], spec: str | None) -> str:
+def render(
+    results: Result | CaseResults,
+    pictures: Mapping[str, bytes],
+    spec: str | None,
+    comparisons: CaseComparisons | None = None,
+) -> str:
     """Write the page of a result, or of all load cases, as HTML that needs no other file.
 
-    `pictures` are SVG files by name as of `figures.pictures_of`, and `spec` is the text of the spec as run.
+    `pictures` are SVG files by name as of `figures.pictures_of`, and `spec` is the text of the spec as run. With
+    `comparisons` the page shows whether all formulations agree under the load cases.
     """
     cases = by_case(results)
     first = next(iter(cases.values()))
@@ -48,6 +56,7 @@ def render(results: Result | CaseResults, pictures: Mapping[str, bytes], spec: s
         overall=overall(verdicts),
         headline=[*_headline(alone, units)] if alone else [],
         details=[*facts(alone, units)] if alone else [],
+        formulations=[] if comparisons is None else [*_formulations(comparisons)],
         cases=[_case(name, result, units) for name, result in cases.items()] if not alone else [],
         zones=[(name, row) for name, result in cases.items() for row in zone_rows(result.to_dict(), units)],
         envelope=[*_envelope(cases, units)] if not alone else [],
@@ -107,6 +116,21 @@ def _case(name: str, result: Result, units: Units) -> dict[str, Any]:
     }
 
 
+def _formulations(comparisons: CaseComparisons) -> Iterator[dict[str, Any]]:
+    """The verdict on each formulation under each load case, with its difference from the direct solution."""
+    for case, level in comparisons.levels.items():
+        for contender in level.comparison.contenders:
+            difference = level.comparison.difference(contender.label)
+            yield {
+                "case": case,
+                "label": contender.label,
+                "outcome": contender.verdict.outcome,
+                "words": "" if contender.certified else sentence_case(contender.verdict.words),
+                "quality": OUTCOMES[contender.verdict.outcome].quality,
+                "difference": NOTHING if difference is None else small(difference.largest),
+            }
+
+
 def _envelope(cases: Mapping[str, Result], units: Units) -> Iterator[tuple[str, str, str, str]]:
     """Zone, largest peak of all load cases, the load case, and the place."""
     first = next(iter(cases.values()))
@@ -141,6 +165,8 @@ def _picture(name: str, svg: bytes, first: Result) -> Any:
     """A picture with its caption and text alternative."""
     kind, _, number = name.partition("-")
     zones = first.contact.zone_names
-    of_zone = f"{zones[int(number) - 1]}: {ZONE_PICTURES[kind]}" if number else sentence_case(ZONE_PICTURES.get(kind, ""))
+    of_zone = (
+        f"{zones[int(number) - 1]}: {ZONE_PICTURES[kind]}" if number else sentence_case(ZONE_PICTURES.get(kind, ""))
+    )
     caption = of_zone if number or name not in CAPTIONS else CAPTIONS[name]
     return name, picture(svg, caption, f"{first.contact.name}. {caption}.")

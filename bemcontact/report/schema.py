@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from bemcontact.analysis.case_comparisons import CaseComparisonsRecord
 from bemcontact.analysis.load_cases import CasesRecord
 from bemcontact.analysis.mesh_study import MeshStudyRecord
 from bemcontact.analysis.reproduction import ReproductionRecord
@@ -20,6 +21,7 @@ RESULTS: dict[str, type[Leaf] | type[Record]] = {
     "cases": CasesRecord,
     "comparison": ComparisonRecord,
     "report": MeshStudyRecord,
+    "case_report": CaseComparisonsRecord,
     "reproduction": ReproductionRecord,
     "path": ParameterPath,
     "study": StudyRecord,

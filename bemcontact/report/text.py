@@ -11,7 +11,6 @@ from rich.table import Table
 from rich.text import Text
 
 from bemcontact.analysis.check import CheckedProblem
-from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.mesh_study import MeshLevel, MeshStudy
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.certificate import CertificateKind
@@ -19,8 +18,8 @@ from bemcontact.assessment.comparison import Comparison
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.problem import DeflectedContour, Problem, Units
-from bemcontact.report.bars import mesh_in_short, with_bar
-from bemcontact.report.facts import contact_intervals, facts, peak_of, peak_place, scores_in_words, zone_forces
+from bemcontact.report.bars import with_bar
+from bemcontact.report.facts import facts, scores_in_words
 from bemcontact.report.formatting import (
     case_in_words,
     convexity_in_words,
@@ -42,9 +41,7 @@ from bemcontact.report.formatting import (
 )
 from bemcontact.report.verdicts import (
     Verdict,
-    case_verdicts,
     mesh_study_verdicts,
-    overall,
     path_verdicts,
     result_verdicts,
 )
@@ -134,39 +131,6 @@ def condensed_summary(contact: CondensedContact, path: Path) -> RenderableType:
     for note in contact.notes:
         add(shown, "Note", note)
     return Group(Text(contact.name, "bold"), "", shown)
-
-
-def cases_summary(cases: CaseResults) -> RenderableType:
-    """List certificate and peak of each load case and combination, then force and contact of each zone."""
-    table, shown = table_of("load case", "equations", "mesh", "peak", "at"), list_of_facts()
-    zones = table_of("load case", "zone", "force on the body", "contact")
-    for name, result in cases.results.items():
-        record, units = result.to_dict(), units_of(result.contact)
-        verdicts = result_verdicts(result)
-        cells = [
-            name,
-            verdicts[0].word,
-            mesh_in_short(result.accuracy.to_dict()),
-            peak_of(record, units) if record["intervals"] else "",
-            peak_place(record, units),
-        ]
-        style = "" if result.holds is not False else {"good": "", "fair": "yellow", "bad": "red"}[overall(verdicts)]
-        table.add_row(*map(Text, cells), style=style)
-        forces = zone_forces(record, units)
-        places = [*contact_intervals(record, units, short=len(forces) > 1)]  # so that lines stay short
-        for i, (zone, force) in enumerate(forces.items()):
-            touching = "\n".join(place for where, place in places if where == zone) or "nowhere"
-            zones.add_row(*map(Text, (name if i == 0 else "", zone, force, touching)), style=style)
-    for note in dict.fromkeys(note for result in cases.results.values() for note in result.notes):
-        names = [name for name, result in cases.results.items() if note in result.notes]
-        add(shown, "Note", note if len(names) == len(cases.results) else f"{', '.join(names)}: {note}")
-    if cases.worst is not None:
-        add(shown, "Largest peak", f"in {cases.worst}; pressures are per UNDEFORMED length")
-    if cases.infinite:
-        add(shown, "Largest peak", f"infinite in {', '.join(repr(name) for name in cases.infinite)}")
-    for verdict in case_verdicts(cases):
-        add_verdict(shown, verdict)
-    return Group(Text(cases.name, "bold"), "", table, "", zones, "", shown)
 
 
 def _edge_table(problem: Problem) -> Table:

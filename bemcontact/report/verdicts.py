@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.mesh_study import MeshStudy
 from bemcontact.analysis.result import Result
@@ -132,6 +133,14 @@ def shortfall(results: Result | CaseResults) -> str:
 def mesh_study_shortfall(study: MeshStudy) -> str:
     """Why a comparison does not hold."""
     return _shortfall(mesh_study_verdicts(study.to_dict()))
+
+
+def case_comparisons_shortfall(comparisons: CaseComparisons) -> str:
+    """Why comparisons under load cases do not hold: formulations that fall short, then what the direct solutions lack."""
+    failing = (
+        f"{name}: {level.comparison.verdict}" for name, level in comparisons.levels.items() if not level.certified
+    )
+    return " ".join((*failing, *filter(None, [shortfall(comparisons.answers)])))
 
 
 def path_shortfall(path: ParameterPath) -> str:

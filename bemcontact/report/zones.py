@@ -15,6 +15,14 @@ from bemcontact.report.bars import NOTHING, JsonObject, bars_of, unit_of_bar, wi
 from bemcontact.report.facts import contact_intervals, coordinate_size, force_errors, pressed_by, zone_forces
 from bemcontact.report.formatting import vector, with_unit, zero_if_negligible
 
+ZONE_COLUMNS = (
+    "case", "zone", "interval", "start_x", "start_y", "end_x", "end_y", "end_error", "length", "length_error", "peak",
+    "peak_error", "peak_x", "peak_y", "force_x", "force_y", "force_error", "moment",
+)  # fmt: skip
+"""Columns of zones.csv."""
+POINT_COLUMNS = ("case", "zone", "x", "y", "normal_x", "normal_y", "arc", "pressure", "gap", "touching")
+"""Columns of points.csv."""
+
 
 def by_case(results: Result | CaseResults) -> dict[str, Result]:
     """Results by the name of their load case; a result alone has the name ""."""
@@ -67,11 +75,9 @@ def zones_csv(results: Result | CaseResults) -> str:
 
     Errors are absolute, in the unit of the number before them; empty where there is no number.
     """
-    header = (
-        "case zone interval start_x start_y end_x end_y end_error length length_error peak peak_error peak_x peak_y "
-        "force_x force_y force_error moment"
-    ).split()
-    return _written(header, (row for case, result in by_case(results).items() for row in _zone_lines(case, result)))
+    return _written(
+        ZONE_COLUMNS, (row for case, result in by_case(results).items() for row in _zone_lines(case, result))
+    )
 
 
 def _zone_lines(case: str, result: Result) -> Iterator[list[Any]]:
@@ -106,8 +112,9 @@ def _error(bar: ErrorBar | None) -> float | str:
 
 def points_csv(results: Result | CaseResults) -> str:
     """Write a line for each contact point of each load case: place, normal, pressure, gap, and whether it touches."""
-    header = "case zone x y normal_x normal_y arc pressure gap touching".split()
-    return _written(header, (row for case, result in by_case(results).items() for row in _point_lines(case, result)))
+    return _written(
+        POINT_COLUMNS, (row for case, result in by_case(results).items() for row in _point_lines(case, result))
+    )
 
 
 def _point_lines(case: str, result: Result) -> Iterator[list[Any]]:
@@ -117,8 +124,9 @@ def _point_lines(case: str, result: Result) -> Iterator[list[Any]]:
     for run in np.unique(contact.run).tolist():
         for i in contact.points_of_run(run).tolist():
             yield [
-                case, contact.zone_names[int(contact.zone[i])], *contact.points[i].tolist(), *contact.normals[i].tolist(),
-                float(contact.arc_position[i]), float(solution.pressure[i]), float(gap[i]), int(result.touching[i]),
+                case, contact.zone_names[int(contact.zone[i])],
+                *contact.points[i].tolist(), *contact.normals[i].tolist(), float(contact.arc_position[i]),
+                float(solution.pressure[i]), float(gap[i]), int(result.touching[i]),
             ]  # fmt: skip
 
 

@@ -9,7 +9,14 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.report.bars import with_bar
-from bemcontact.report.figures.contact import body_extent, close_ups, common_scale, draw_contact, draw_deformed, sketch_contact
+from bemcontact.report.figures.contact import (
+    body_extent,
+    close_ups,
+    common_scale,
+    draw_contact,
+    draw_deformed,
+    sketch_contact,
+)
 from bemcontact.report.figures.mesh_study import plan_of
 from bemcontact.report.figures.page import (
     GREY,

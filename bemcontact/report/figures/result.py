@@ -16,7 +16,6 @@ from bemcontact.report.figures.contact import body_extent, close_ups, draw_defor
 from bemcontact.report.figures.page import (
     BLACK,
     GREY,
-    PIECE_COLOURS,
     QUALITY_COLOURS,
     Piece,
     ceiling,

@@ -158,7 +158,7 @@ def _settle(axes: Axes) -> None:
 
 
 def _room(axes: Axes) -> Bbox:
-    """Where names may stand on the page: what the layout gives to the axes, but for sides that have ticks or a title."""
+    """Where names may stand on the page: what the layout gives to the axes, but for sides with ticks or a title."""
     own, whole = axes.get_window_extent(), axes.get_position(original=True).transformed(axes.figure.transSubfigure)
     corner, titled = own if axes.axison else whole, axes.get_title("left") or axes.get_title()
     return Bbox([[corner.x0, corner.y0], [max(own.x1, whole.x1), own.y1 if titled else max(own.y1, whole.y1)]])
