@@ -136,7 +136,7 @@ def mesh_study_shortfall(study: MeshStudy) -> str:
 
 
 def case_comparisons_shortfall(comparisons: CaseComparisons) -> str:
-    """Why comparisons under load cases do not hold: formulations that fall short, then what the direct solutions lack."""
+    """Why comparisons under load cases do not hold: formulations that fall short, then direct solutions that do."""
     failing = (
         f"{name}: {level.comparison.verdict}" for name, level in comparisons.levels.items() if not level.certified
     )

@@ -40,7 +40,7 @@ CROSSING = 0.45
 BENT = 0.2
 """Turn of the normals of a fan, in radians, from which on their crossing would be seen."""
 CLOSE, AROUND = 0.35, 1.0
-"""Extent of a contact over that of the body below which it has a close-up, and how many extents that shows around it."""
+"""Extent of a contact over that of the body below which it has a close-up, and the extents to either side there."""
 ROOM = 1.5
 """Room for a fan and its number over the length of the fan."""
 OVERHANG = 0.14
@@ -312,7 +312,7 @@ MAGNIFIED = 0.05
 """Share of the body's size at which the largest displacement can be seen well; smaller ones are magnified."""
 
 TURN = 0.6
-"""Turn of the normals of a contact, in radians, from which its surface is bent with the gaps, and not moved as a whole."""
+"""Turn of the normals of a contact, in radians, from which its surface is bent with the gaps, not moved."""
 NEAR = 0.15
 """Share of the body's size up to which the rigid surface across a gap is shown."""
 DISTORTED = 0.1

@@ -64,9 +64,8 @@ def figure_of_result(result: Result) -> Figure:
     figure = new_page(inches, sum(heights) + 0.8 + ROW * len(rows))
     grid = figure.add_gridspec(plans + len(rows), 6, height_ratios=[*heights, *len(rows) * [ROW]])
     contact = figure.add_subplot(grid[0, :] if plans == 2 else grid[0, :3]) if plans else None
-    places = [row for row in range(plans, plans + len(rows))]
     closer = dict[str, Axes]()
-    for row, zone in zip(places, rows, strict=True):
+    for row, zone in enumerate(rows, plans):
         name = zones[0] if zone is None else zone
         if columns == 3 and name in near:
             closer[name] = figure.add_subplot(grid[row, :2])
