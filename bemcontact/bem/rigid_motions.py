@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import block_diag
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.contact_points import ContactPoints
@@ -320,8 +319,10 @@ def _counterclockwise(motions: Array) -> Array:
 
 def _to_points(levers: Array, radius: float) -> Array:
     """Motion (3 t, 3 t) of tools about their points from that about their poles, at levers (t, 2) from these."""
-    blocks = [[[1.0, 0.0, -y / radius], [0.0, 1.0, x / radius], [0.0, 0.0, 1 / radius]] for x, y in levers]
-    return np.asarray(block_diag(np.zeros((0, 0)), *blocks), float)
+    motion, tool = np.zeros((len(levers), 3, len(levers), 3)), np.arange(len(levers))
+    motion[tool, :, tool, :] = np.diag([1.0, 1.0, 1.0 / radius])
+    motion[tool, 0, tool, 2], motion[tool, 1, tool, 2] = -levers[:, 1] / radius, levers[:, 0] / radius
+    return motion.reshape(3 * len(levers), 3 * len(levers))
 
 
 def _split(basis: Array, motions: Array) -> tuple[Array, Array]:

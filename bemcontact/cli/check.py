@@ -26,7 +26,7 @@ def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1)
 
     def work(_: Report) -> CommandOutput:
         from bemcontact.analysis.check import check as checked
-        from bemcontact.report import text
+        from bemcontact.report.problem_text import problem_summary
 
         try:
             body = checked(source.problem(refine))
@@ -38,7 +38,7 @@ def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1)
             from bemcontact.report import figures
 
             figures.save(figures.figure_of_problem(body.problem, body.mesh), figure)
-        return CommandOutput(summary=lambda: text.problem_summary(body))
+        return CommandOutput(summary=lambda: problem_summary(body))
 
     run("checking", work, source=source, files={"--figure": figure})
 

@@ -49,7 +49,7 @@ def compare(
 
     def work(report: Report) -> CommandOutput:
         from bemcontact.analysis import compare as comparing
-        from bemcontact.report import text
+        from bemcontact.report.comparison_text import mesh_study_summary
         from bemcontact.report.verdicts import mesh_study_shortfall
 
         parts = several(refine, "--refine", "whole number", int)
@@ -66,7 +66,7 @@ def compare(
 
             folder.save(study, out, source.as_run())
         return CommandOutput(
-            summary=lambda: text.mesh_study_summary(study),
+            summary=lambda: mesh_study_summary(study),
             json=study.to_json,
             holds=study.holds is not False,
             verdict=mesh_study_shortfall(study),

@@ -59,7 +59,7 @@ def path(
     def work(report: Report) -> CommandOutput:
         from bemcontact.analysis.follow import follow
         from bemcontact.problem.key_path import parsed_path
-        from bemcontact.report import text
+        from bemcontact.report.path_text import path_summary
         from bemcontact.report.verdicts import path_shortfall
 
         problem = source.problem(refine)
@@ -73,7 +73,7 @@ def path(
 
             folder.save_path(followed, out)
         return CommandOutput(
-            summary=lambda: text.path_summary(followed),
+            summary=lambda: path_summary(followed),
             json=followed.to_json,
             holds=followed.holds is not False,
             verdict=path_shortfall(followed),

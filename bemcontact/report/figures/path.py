@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
+from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.page import BLACK, CYCLE, QUALITY_COLOURS, labeled, new_page, plain, short_label
-from bemcontact.report.formatting import number, units_of
+from bemcontact.report.formatting import number
 from bemcontact.report.verdicts import in_short, overall, path_verdicts
 
 WIDTH, HEIGHT = 5.6, 2.5
