@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.arguments import JsonOption, Source, by_option, names, option, several
-from bemcontact.cli.command import CommandOutput, run
+from bemcontact.cli.command import CommandOutput, modules, run
 from bemcontact.cli.terminal import Report
 from bemcontact.options import ComparisonOptions
 
@@ -48,9 +48,10 @@ def compare(
     """
 
     def work(report: Report) -> CommandOutput:
-        from bemcontact.analysis import compare as comparing
-        from bemcontact.report.comparison_text import mesh_study_summary
-        from bemcontact.report.verdicts import mesh_study_shortfall
+        with modules():
+            from bemcontact.analysis import compare as comparing
+            from bemcontact.report.comparison_text import mesh_study_summary
+            from bemcontact.report.verdicts import mesh_study_shortfall
 
         parts = several(refine, "--refine", "whole number", int)
         penalties = None if penalty is None else several(penalty, "--penalty", "number", float)

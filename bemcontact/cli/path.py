@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.arguments import JsonOption, RefineOption, Source, by_option, read_number, with_default
-from bemcontact.cli.command import CommandOutput, run
+from bemcontact.cli.command import CommandOutput, modules, run
 from bemcontact.cli.terminal import Report
 
 
@@ -57,10 +57,11 @@ def path(
     """
 
     def work(report: Report) -> CommandOutput:
-        from bemcontact.analysis.follow import follow
-        from bemcontact.problem.key_path import parsed_path
-        from bemcontact.report.path_text import path_summary
-        from bemcontact.report.verdicts import path_shortfall
+        with modules():
+            from bemcontact.analysis.follow import follow
+            from bemcontact.problem.key_path import parsed_path
+            from bemcontact.report.path_text import path_summary
+            from bemcontact.report.verdicts import path_shortfall
 
         problem = source.problem(refine)
         with by_option("--vary"):
