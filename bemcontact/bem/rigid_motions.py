@@ -319,10 +319,11 @@ def _counterclockwise(motions: Array) -> Array:
 
 def _to_points(levers: Array, radius: float) -> Array:
     """Motion (3 t, 3 t) of tools about their points from that about their poles, at levers (t, 2) from these."""
-    motion, tool = np.zeros((len(levers), 3, len(levers), 3)), np.arange(len(levers))
-    motion[tool, :, tool, :] = np.diag([1.0, 1.0, 1.0 / radius])
-    motion[tool, 0, tool, 2], motion[tool, 1, tool, 2] = -levers[:, 1] / radius, levers[:, 0] / radius
-    return motion.reshape(3 * len(levers), 3 * len(levers))
+    motions = np.zeros((3 * len(levers), 3 * len(levers)))
+    for first, (x, y) in zip(range(0, len(motions), 3), levers.tolist(), strict=True):
+        own = slice(first, first + 3)
+        motions[own, own] = [[1.0, 0.0, -y / radius], [0.0, 1.0, x / radius], [0.0, 0.0, 1 / radius]]
+    return motions
 
 
 def _split(basis: Array, motions: Array) -> tuple[Array, Array]:

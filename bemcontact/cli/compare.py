@@ -51,7 +51,7 @@ def compare(
         with modules():
             from bemcontact.analysis import compare as comparing
             from bemcontact.report.comparison_text import mesh_study_summary
-            from bemcontact.report.verdicts import mesh_study_shortfall
+            from bemcontact.report.verdicts import mesh_study_verdicts, shortfall_of
 
         parts = several(refine, "--refine", "whole number", int)
         penalties = None if penalty is None else several(penalty, "--penalty", "number", float)
@@ -70,7 +70,7 @@ def compare(
             summary=lambda: mesh_study_summary(study),
             json=study.to_json,
             holds=study.holds is not False,
-            verdict=mesh_study_shortfall(study),
+            verdict=shortfall_of(mesh_study_verdicts(study.to_dict())),
         )
 
     run("reading", work, source=source, folder=out, json_file=json_file)

@@ -61,7 +61,8 @@ def path(
             from bemcontact.analysis.follow import follow
             from bemcontact.problem.key_path import parsed_path
             from bemcontact.report.path_text import path_summary
-            from bemcontact.report.verdicts import path_shortfall
+            from bemcontact.report.path_verdicts import path_verdicts
+            from bemcontact.report.verdicts import shortfall_of
 
         problem = source.problem(refine)
         with by_option("--vary"):
@@ -77,7 +78,7 @@ def path(
             summary=lambda: path_summary(followed),
             json=followed.to_json,
             holds=followed.holds is not False,
-            verdict=path_shortfall(followed),
+            verdict=shortfall_of(path_verdicts(followed)),
         )
 
     run("following", work, source=source, folder=out, kind="path", json_file=json_file)

@@ -6,8 +6,9 @@ from rich.text import Text
 
 from bemcontact.analysis.mesh_study import MeshLevel, MeshStudy
 from bemcontact.assessment.comparison import Comparison
+from bemcontact.assessment.contender import Contender
 from bemcontact.problem import Units
-from bemcontact.report.contact_words import convexity_in_words, units_of
+from bemcontact.report.contact_words import penalty_in_words, units_of
 from bemcontact.report.facts import facts, scores_in_words
 from bemcontact.report.formatting import seconds_in_words
 from bemcontact.report.tables import add, list_of_facts, table_of
@@ -91,8 +92,17 @@ def _curvature_table(compared: Comparison) -> Table:
             continue
         inertias = (search.inertia, search.reduced_inertia_start, search.reduced_inertia_end)
         written = (" ".join(map(str, inertia)) for inertia in inertias)
-        table.add_row(*map(Text, (item.label, *written, convexity_in_words(item))))
+        table.add_row(*map(Text, (item.label, *written, _convexity(item))))
     return table
+
+
+def _convexity(contender: Contender) -> str:
+    """Whether a program is convex subject to its equations and equilibrium, and up to which penalty."""
+    search = None if contender.solution is None else contender.solution.search
+    convex = "yes" if contender.convex else "no"
+    if search is None or search.penalty is None:
+        return convex
+    return f"{convex}, {penalty_in_words(search.penalty.to_dict(), Units()).limit}"
 
 
 def _score_table(level: MeshLevel, units: Units) -> Table:

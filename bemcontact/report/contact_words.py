@@ -2,7 +2,6 @@
 
 from typing import NamedTuple
 
-from bemcontact.assessment.contender import Contender
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import LocalSearch
 from bemcontact.problem import Units
@@ -64,12 +63,3 @@ def held_by(contact: CondensedContact) -> str:
     if not contact.free_motions:
         return "all held by conditions"
     return f"held by contact: {', '.join(contact.motion_names)}"
-
-
-def convexity_in_words(contender: Contender) -> str:
-    """Whether a program is convex subject to its equations and equilibrium, and up to which penalty."""
-    search = None if contender.solution is None else contender.solution.search
-    convex = "yes" if contender.convex else "no"
-    if search is None or search.penalty is None:
-        return convex
-    return f"{convex}, {penalty_in_words(search.penalty.to_dict(), Units()).limit}"

@@ -8,9 +8,9 @@ from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.report.bars import with_bar
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.formatting import number, plural, vector
+from bemcontact.report.path_verdicts import path_verdicts
 from bemcontact.report.tables import list_of_facts, table_of
 from bemcontact.report.text import add_verdict
-from bemcontact.report.verdicts import path_verdicts
 
 MANY = 4
 """Number of points up to which those that enter or leave together are named."""

@@ -11,7 +11,8 @@ from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.page import BLACK, CYCLE, QUALITY_COLOURS, labeled, new_page, plain, short_label
 from bemcontact.report.formatting import number
-from bemcontact.report.verdicts import in_short, overall, path_verdicts
+from bemcontact.report.path_verdicts import path_verdicts
+from bemcontact.report.verdicts import in_short, overall
 
 WIDTH, HEIGHT = 5.6, 2.5
 """Inches of each picture."""
