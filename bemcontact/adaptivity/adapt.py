@@ -9,11 +9,12 @@ from bemcontact.adaptivity.coarse_mesh import CoarseMesh, unknown
 from bemcontact.adaptivity.error_bars import SAFETY, error_bars, resolved
 from bemcontact.adaptivity.fields import MeshDifference, Solved, solved
 from bemcontact.adaptivity.hidden_changes import told_apart
-from bemcontact.adaptivity.mesh_search import MeshSearch, cut, mesh_search
+from bemcontact.adaptivity.mesh_search import MeshSearch
+from bemcontact.adaptivity.mesh_sizes import MOST_UNKNOWNS, cut
 from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.bem.condense import Condensation, Condenser, condensed
-from bemcontact.errors import Issue, ProblemError, SingularSystemError, SolverError
+from bemcontact.errors import ProblemError, SingularSystemError, SolverError
 from bemcontact.problem.problem import ACCURACY, Problem
 
 NONE_ASKED = "no accuracy is asked for, and errors are not estimated"
@@ -27,10 +28,6 @@ MOST_FAILURES = 3
 """Number of first meshes that may have no contact state."""
 ROUNDED = 100 * float(np.finfo(float).eps)
 """Deformation over the largest coordinate or displacement, below which gaps are round-off."""
-MOST_UNKNOWNS = 4000
-"""Largest number of unknowns of the finer mesh."""
-UNKNOWNS = 4
-"""Unknowns of an element: two displacements at each of two nodes, for the third is that of the next element."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -145,28 +142,11 @@ def _differences(coarse: Solved, fine: Solved, asked: float) -> list[MeshDiffere
     return told_apart(pairs, asked / SAFETY)
 
 
-def first_mesh(problem: Problem) -> Problem:
-    """The problem on the first mesh, from the geometry alone and the elements that are stated."""
-    return _search(problem).mesh(1)
-
-
-def _search(problem: Problem) -> MeshSearch:
-    """Begin to search for a mesh; `ProblemError` if the stated elements alone are more than it can have."""
-    stated = sum(edge.elements or 0 for edge in problem.boundary.edges)
-    if (most := MOST_UNKNOWNS // UNKNOWNS) < stated:
-        message = (
-            f"{stated} elements are stated, and a mesh that is found has at most {most}; state fewer, or elements on "
-            "all edges and no accuracy, so that the mesh is taken as it is"
-        )
-        raise ProblemError(Issue(path=("boundary",), message=message))
-    return mesh_search(problem)
-
-
 def _found(problem: Problem, progress: Callable[[str], object], passes: int = MOST_PASSES) -> Meshed:
     """Find a mesh on which all error bars are below the accuracy asked, and solve on it."""
     asked = problem.asked_accuracy
     assert asked is not None
-    search = _search(problem)
+    search = MeshSearch.of(problem)
     best: Meshed | None = None
     errors: list[float] = []
     reason = f"no better mesh was found in {passes} passes"

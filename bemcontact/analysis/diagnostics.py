@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.linalg import null_space, orth
 
 from bemcontact.adaptivity.zone_runs import SAME
+from bemcontact.analysis.spline_bulges import bulging
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import element_lengths
@@ -62,27 +63,6 @@ def diagnostics(
         yield from beyond_ends(body, touching)
         displacement = float(abs(solution.displacement).max(initial=0.0))
         yield from bulging(body, BULGE * displacement, FAR * displacement)
-
-
-def bulging(body: Body, least: float, reach: float = np.inf) -> Iterator[str]:
-    """Note a spline that bulges between its points by more than `least` [L], no farther from contact points than that.
-
-    `reach` [L] is the distance from contact points beyond which a bulge does not matter.
-    """
-    for number, (name, zone) in enumerate(body.problem.contact_zones.items()):
-        if not isinstance(zone.surface, Spline):
-            continue
-        nodes = body.mesh.nodes[body.points.node[body.points.zone == number]]
-        excess, places = zone.surface.bulges
-        near = np.array([np.hypot(*(nodes - place).T).min() for place in places]) <= reach + excess
-        i = int(np.argmax(np.where(near, excess, 0.0)))
-        if near[i] and excess[i] > least:
-            x, y = places[i].tolist()
-            how_far = f"{excess[i]:.2g} {body.problem.units.length}".rstrip()
-            yield (
-                f"the spline of '{name}' bulges by {how_far} at ({x:.5g}, {y:.5g}), between two of its points, beside "
-                "the line through them; put several points on a flat part, close to where it ends, or use a polyline"
-            )
 
 
 def coarse_answer(asked: float | None) -> Iterator[str]:

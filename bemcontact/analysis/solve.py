@@ -24,7 +24,7 @@ from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.formulations.multistart import multistart, solve_contact
-from bemcontact.formulations.search import with_start_read
+from bemcontact.formulations.starts import with_start_read
 from bemcontact.options import (
     STARTS,
     FormulationName,

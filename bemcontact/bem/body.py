@@ -9,8 +9,8 @@ import scipy
 
 from bemcontact.arrays import Array, nonnegative_fit
 from bemcontact.bem.contact_points import ContactPoints, contact_points
-from bemcontact.bem.loading import Loading, case_loadings, combined, particular_solution, permanent_loading
-from bemcontact.bem.mesh import BoundaryValues, Mesh, boundary_values, build
+from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
+from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.rigid_motions import (
     BODY,
     UNSEEN,
@@ -22,10 +22,9 @@ from bemcontact.bem.rigid_motions import (
     placed_tools,
     toward,
 )
-from bemcontact.bem.system import System, solve_system
 from bemcontact.checks.memory import ensure_memory
 from bemcontact.contact.load_cases import BALANCED, Pinned
-from bemcontact.errors import Issue, KeyPath, ProblemError
+from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import Circle, DeflectedContour
 from bemcontact.problem.visibility import zone_edges
@@ -321,39 +320,12 @@ def deflections(problem: Problem, mesh: Mesh) -> dict[str, Array]:
     `ProblemError` if the conditions of a contour contradict each other, or leave the body free to move.
     """
     surfaces = {name: zone.surface for name, zone in problem.contact_zones.items()}
+    contours = {name: surface for name, surface in surfaces.items() if isinstance(surface, DeflectedContour)}
+    if not contours:
+        return {}
+    from bemcontact.bem.deflected_contours import deflection
+
     return {
-        name: _deflection(problem, mesh, surface, ("contact_zones", name, "surface"))
-        for name, surface in surfaces.items()
-        if isinstance(surface, DeflectedContour)
+        name: deflection(problem, mesh, surface, ("contact_zones", name, "surface"))
+        for name, surface in contours.items()
     }
-
-
-def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: KeyPath) -> Array:
-    """Displacement (N, 2) [L] of the body under the loads that shape a contour, whose path of keys is given."""
-    values = _boundary_values(problem, mesh, surface, path)
-    motions = free_rigid_motions(mesh, values.displacement_given)
-    if len(motions):
-        message = (
-            f"with these conditions nothing holds the body against the {' and the '.join(motions.describe())}, for "
-            "the contour is computed without contact; prescribe displacements that hold it"
-        )
-        raise ProblemError(Issue(path=(*path, "conditions"), message=message))
-    loading = Loading(values=values, particular=particular_solution(surface.loads, problem.material, mesh))
-    system = System(
-        mesh=mesh, material=problem.material, points=ContactPoints.none(mesh), motions=motions, loadings=(loading,),
-    )  # fmt: skip
-    displacement, _ = system.fields(solve_system(system).combined(np.ones(1)), loading)
-    return displacement
-
-
-def _boundary_values(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: KeyPath) -> BoundaryValues:
-    """Spread the conditions of a contour over the mesh; issues of its own conditions get its key path."""
-    other = problem.model_copy(update={"conditions": problem.conditions | surface.conditions})
-    try:
-        return boundary_values(other, mesh)
-    except ProblemError as error:
-        issues = [
-            replace(item, path=(*path, *item.path)) if item.path[1] in surface.conditions else item
-            for item in error.issues
-        ]
-        raise ProblemError(issues) from None

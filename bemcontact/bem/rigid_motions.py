@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import block_diag
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.contact_points import ContactPoints
@@ -320,8 +319,11 @@ def _counterclockwise(motions: Array) -> Array:
 
 def _to_points(levers: Array, radius: float) -> Array:
     """Motion (3 t, 3 t) of tools about their points from that about their poles, at levers (t, 2) from these."""
-    blocks = [[[1.0, 0.0, -y / radius], [0.0, 1.0, x / radius], [0.0, 0.0, 1 / radius]] for x, y in levers]
-    return np.asarray(block_diag(np.zeros((0, 0)), *blocks), float)
+    motions = np.zeros((3 * len(levers), 3 * len(levers)))
+    for first, (x, y) in zip(range(0, len(motions), 3), levers.tolist(), strict=True):
+        own = slice(first, first + 3)
+        motions[own, own] = [[1.0, 0.0, -y / radius], [0.0, 1.0, x / radius], [0.0, 0.0, 1 / radius]]
+    return motions
 
 
 def _split(basis: Array, motions: Array) -> tuple[Array, Array]:

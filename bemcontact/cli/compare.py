@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.arguments import JsonOption, Source, by_option, names, option, several
-from bemcontact.cli.command import CommandOutput, run
+from bemcontact.cli.command import CommandOutput, modules, run
 from bemcontact.cli.terminal import Report
 from bemcontact.options import ComparisonOptions
 
@@ -48,9 +48,10 @@ def compare(
     """
 
     def work(report: Report) -> CommandOutput:
-        from bemcontact.analysis import compare as comparing
-        from bemcontact.report import text
-        from bemcontact.report.verdicts import mesh_study_shortfall
+        with modules():
+            from bemcontact.analysis import compare as comparing
+            from bemcontact.report.comparison_text import mesh_study_summary
+            from bemcontact.report.verdicts import mesh_study_verdicts, shortfall_of
 
         parts = several(refine, "--refine", "whole number", int)
         penalties = None if penalty is None else several(penalty, "--penalty", "number", float)
@@ -66,10 +67,10 @@ def compare(
 
             folder.save(study, out, source.as_run())
         return CommandOutput(
-            summary=lambda: text.mesh_study_summary(study),
+            summary=lambda: mesh_study_summary(study),
             json=study.to_json,
             holds=study.holds is not False,
-            verdict=mesh_study_shortfall(study),
+            verdict=shortfall_of(mesh_study_verdicts(study.to_dict())),
         )
 
     run("reading", work, source=source, folder=out, json_file=json_file)

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.arguments import FigureOption, JsonOption, RefineOption, Source, by_option
-from bemcontact.cli.command import CommandOutput, run
+from bemcontact.cli.command import CommandOutput, modules, run
 from bemcontact.cli.terminal import Report
 from bemcontact.errors import OptionError
 from bemcontact.options import SolveOptions
@@ -45,10 +45,11 @@ def solve(
     """
 
     def work(report: Report) -> CommandOutput:
-        from bemcontact.analysis import load_cases
-        from bemcontact.analysis import solve as analysis
-        from bemcontact.report import text
-        from bemcontact.report.verdicts import shortfall
+        with modules():
+            from bemcontact.analysis import load_cases
+            from bemcontact.analysis import solve as analysis
+            from bemcontact.report import text
+            from bemcontact.report.verdicts import shortfall
 
         def draw(results: analysis.Result | load_cases.CaseResults) -> None:
             if figure:

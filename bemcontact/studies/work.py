@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from threadpoolctl import threadpool_limits
 
-from bemcontact.adaptivity.mesh_search import cut
+from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.analysis.solve import solve_with
 from bemcontact.bem.body import Body, body_of
 from bemcontact.bem.condense import Condensation, CondensedTogether, Condenser, condense_together, matrix_of

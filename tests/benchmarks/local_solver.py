@@ -22,7 +22,8 @@ from rich.console import Console
 from rich.table import Table
 from scipy.linalg import qr
 
-from bemcontact.formulations.local_solver import QPResult, QPStatus, minimize_qp
+from bemcontact.formulations.local_solver.minimize import minimize_qp
+from bemcontact.formulations.local_solver.result import QPResult, QPStatus
 
 RIGHT = 1e-6
 """Largest error of u_n and of p, each over its own largest entry, of a contact solution that is right."""

@@ -42,7 +42,7 @@ from bemcontact.errors import OptionError
 from bemcontact.formulations import complementarity, qp1, qp2, qp3
 from bemcontact.formulations.multistart import multistart
 from bemcontact.formulations.scaling import scale
-from bemcontact.formulations.search import Start, draw_starts
+from bemcontact.formulations.starts import Start, draw_starts
 from bemcontact.options import Equilibrium, SolveOptions
 
 

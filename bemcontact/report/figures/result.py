@@ -12,6 +12,7 @@ from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.report.bars import with_bar
+from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import LEVEL
 from bemcontact.report.figures.contact import body_extent, draw_contact, draw_deformed
 from bemcontact.report.figures.page import (
@@ -31,7 +32,7 @@ from bemcontact.report.figures.page import (
     short_label,
     wrapped,
 )
-from bemcontact.report.formatting import units_of, with_unit
+from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import Verdict, case_verdicts, in_short, overall, result_verdicts
 
 PANELS = 4
