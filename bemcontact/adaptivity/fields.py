@@ -13,7 +13,6 @@ from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
 from bemcontact.bem.condense import Condensation, Condenser, boundary_change, boundary_state, condensed
 from bemcontact.bem.mesh import BoundaryState, Mesh
-from bemcontact.bem.outline import Outline
 from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import ContactSolution, Status
@@ -119,11 +118,6 @@ class Solved:
     def mesh(self) -> Mesh:
         """The mesh."""
         return self.body.mesh
-
-    @cached_property
-    def outline(self) -> Outline:
-        """The curves of the edges under the elements."""
-        return Outline(problem=self.body.problem)
 
     def run(self, number: int) -> ZoneRun:
         """The run of a number; one without elements is not among `runs`."""
@@ -310,7 +304,7 @@ def _by_pairs(values: Array) -> Array:
 def penetrations(answer: Solved, case: CaseAnswer) -> Iterator[tuple[int, float]]:
     """Open elements through which a surface passes between the nodes, with the depth [L]."""
     condensation = case.condensation
-    gaps = surface_gaps(condensation.body.problem, case.state, condensation.contact, case.solution, answer.outline)
+    gaps = surface_gaps(condensation.body, case.state, condensation.contact, case.solution)
     size = float(np.hypot(*np.moveaxis(case.displacement, 2, 0)).max())
     for number, zone in enumerate(answer.body.problem.contact_zones):
         elements = np.flatnonzero(answer.in_zone[number] & ~(case.pressure[number] > 0).any(axis=1))

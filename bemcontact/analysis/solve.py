@@ -251,7 +251,7 @@ def assessed(
         where, deepest, said = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite)), None, ()
         if certificate.kind is not CertificateKind.NOT_A_SOLUTION:
             if boundary is not None and condensation is not None:
-                gaps = surface_gaps(condensation.body.problem, boundary, contact, solution)
+                gaps = surface_gaps(condensation.body, boundary, contact, solution)
                 deepest, said = misfit(gaps, condensation.body, contact, solution, where, prepared.accuracy.infinite)
             said += tuple(diagnostics(contact, solution, where, None if condensation is None else condensation.body))
         notes = (*contact.notes, *solution.notes, *said)

@@ -122,7 +122,7 @@ def _condensation(body: Body, system: System, response: Response) -> Condensatio
     points, tools, s = body.points, body.tools, len(body.loadings)
     observed = _observe(system, response)
     prescribed = [np.sum(points.normals * item.values.displacement[points.node], axis=1) for item in body.loadings]
-    R, load = body.normal_motion(body.seen), body.motion_load(body.seen)
+    R, load = body.seen_motion, body.seen_load
     own = np.any(body.seen.body.coefficients, axis=1)
     gauge = fix_gauge(
         MotionAlgebra(rigid_motions=R[:, own], weights=points.tributary, motion_load=load[own]),

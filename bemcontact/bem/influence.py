@@ -20,7 +20,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import kernels, reference_element
-from bemcontact.bem.kernels import Components, GaussRule
+from bemcontact.bem.kernels import GaussRule
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.skeleton import RATIO, disc, skeleton
 from bemcontact.blas_threads import one_thread
@@ -30,6 +30,8 @@ LARGEST_BLOCK = 400_000
 """Pairs of one block of rows: bounds its memory to about 100 MB."""
 CACHE_SIZE = 24_000
 """Kernel evaluations at a time: about ten arrays of them stay in the second-level cache."""
+FEW = 100
+"""Pairs near the points that do not have a rule of their own: setting out for it takes as long as more Gauss points."""
 SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which the elements that are far from a block of points share a rule."""
 
@@ -161,11 +163,14 @@ class Influence:
         return kernels.factors(self.poisson_ratio)
 
     @cached_property
-    def _rules(self) -> list[tuple[GaussRule, ComplexArray]]:
-        """For each tier: the rule, and dζ/dξ (n, m) at its Gauss points."""
-        rules = [kernels.gauss_rule(int(order), self.factors) for order in reference_element.ORDERS]
-        from_middle = self.element_nodes - self.element_nodes[:, 1:2]
-        return [(rule, rule.derivatives.T @ from_middle.T) for rule in rules]
+    def _rules(self) -> list[GaussRule]:
+        """The rule of each tier."""
+        return [kernels.gauss_rule(int(order), self.factors) for order in reference_element.ORDERS]
+
+    @cached_property
+    def _from_middle(self) -> ComplexArray:
+        """Nodes (m, 3) of each element, counted from its middle."""
+        return self.element_nodes - self.element_nodes[:, 1:2]
 
     def each_block(self, collocation: Collocation, use: Callable[[InfluenceRows], None]) -> None:
         """Compute rows of F and G for all points and pass them to `use`, block by block, on `threads` processors.
@@ -254,18 +259,17 @@ class Influence:
         self, block: InfluenceRows, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice
     ) -> None:
         """Every point with every element of a run by products of matrices, in parts that fit into the cache."""
-        rule, tangent = self._rules[tier]
-        middle, _ = disc(z)
+        rule, (middle, _) = self._rules[tier], disc(z)
         zeta = rule.shapes.T @ (nodes - middle).T
         with_U = bool(self._slot[run.start] >= 0)
-        polynomials = kernels.numerator_polynomials(zeta, tangent[:, run])
+        polynomials = kernels.numerator_polynomials(zeta, rule.derivatives.T @ self._from_middle[run].T)
         powers = kernels.point_powers(z - middle)
         step = max(1, CACHE_SIZE // (len(z) * len(zeta)))
         for first in range(0, run.stop - run.start, step):
             some = polynomials[..., first : first + step]
             integrands = (some.reshape(6, -1).T @ powers).reshape(*some.shape[1:], len(z))
             part = slice(run.start + first, run.start + first + some.shape[-1])
-            result = kernels.regular(integrands, rule, self.factors, with_U=with_U)
+            result = kernels.regular(integrands, rule, with_U=with_U)
             self._add_to_rows(block, part, result.T)
             if result.U is not None:
                 block.G[:, :, _successive(self._slot[part])] = result.U
@@ -278,16 +282,16 @@ class Influence:
         tiers = reference_element.tier(reference_element.bernstein_parameter(root.r))
         on_element, on = self._on_elements(block, collocation, element)
         tiers[on_element] = -1
-        T, U = np.empty((4, 3, len(tau))), np.empty((3, 3, len(tau)))
-        T[..., on_element], U[..., on_element] = on
-        for tier in np.unique(tiers[tiers >= 0]):
-            at = np.flatnonzero(tiers == tier)
-            if tier < len(reference_element.ORDERS):
-                result = self._regular(tau[at], int(tier))
-            else:
-                part = kernels.Root(root.r[at], root.minus[at], root.plus[at])
-                result = kernels.components(kernels.near_singular(tau[at], part), self.factors)
-            T[..., at], U[..., at] = result
+        near = np.flatnonzero(tiers == len(reference_element.ORDERS))
+        tiers[near] = -1
+        beside = kernels.beside_element(tau[near], kernels.Root(*(part[near] for part in root)))
+        T, U, nodes = np.empty((4, 3, len(tau))), np.empty((3, 3, len(tau))), np.empty((3, 2, len(tau)))
+        nodes[:, 0], nodes[:, 1] = tau.real.T, tau.imag.T
+        at = np.append(on_element, near)
+        T[..., at], U[..., at] = kernels.components(kernels.with_root_split_off(on.and_those(beside)), self.factors)
+        for tier, at in _worthwhile_groups(tiers):
+            rule = self._rules[tier]
+            T[..., at], U[..., at] = kernels.regular(kernels.numerators(nodes[..., at], rule), rule, with_U=True)
         shape = (len(element), len(base))
         T, U = T.reshape(4, 3, *shape), U.reshape(3, 3, *shape)
         self._add_to_rows(block, element, T)
@@ -297,22 +301,16 @@ class Influence:
         if known.any():
             np.add(block.known, _sums(known, U), out=block.known)
 
-    def _regular(self, tau: ComplexArray, tier: int) -> Components:
-        """Pairs (p, 3), each by itself, with one Gauss rule."""
-        rule, _ = self._rules[tier]
-        integrands = kernels.numerators(rule.shapes.T @ tau.T, rule.derivatives.T @ tau.T)
-        return kernels.regular(integrands, rule, self.factors, with_U=True)
-
     def _on_elements(
         self, block: InfluenceRows, collocation: Collocation, element: IntArray
-    ) -> tuple[IntArray, Components]:
-        """Pairs whose point lies on the element: their places among all of (element, point), and their integrals."""
+    ) -> tuple[IntArray, kernels.Singular]:
+        """Pairs whose point lies on the element: their places among all of (element, point)."""
         point = collocation.on_point
         on = np.flatnonzero((point >= block.rows.start) & (point < block.rows.stop))
         their, local = collocation.on_element[on], collocation.on_local[on]
         row = point[on] - block.rows.start
         at = np.searchsorted(element, their) * block.F.shape[-1] + row
-        return at, kernels.components(kernels.singular(self.element_nodes[their], local), self.factors)
+        return at, kernels.on_element(self.element_nodes[their], local)
 
     def _add_to_rows(self, block: InfluenceRows, element: IntArray | slice, T: Array) -> None:
         """Add the integrals of T over some elements (4, 3, e, R)."""
@@ -327,6 +325,17 @@ class Influence:
         row = np.flatnonzero(corner >= 0)
         for diagonal in range(2):
             block.F[diagonal, corner[row], row] += self.factors.normal * -self.inner_angles[corner[row]]
+
+
+def _worthwhile_groups(tiers: IntArray) -> Iterator[tuple[int, IntArray]]:
+    """Tiers with the pairs that take their rules: few pairs take the next finer rule; those of tier -1 take none."""
+    order = np.argsort(tiers, kind="stable")
+    ends = np.searchsorted(tiers[order], np.arange(-1, len(reference_element.ORDERS)), side="right").tolist()
+    first = ends[0]
+    for tier, end in enumerate(ends[1:]):
+        if end - first >= FEW or (end == len(tiers) and end > first):
+            yield tier, order[first:end]
+            first = end
 
 
 def _places(of: IntArray, count: int) -> IntArray:
