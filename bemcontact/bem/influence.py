@@ -30,8 +30,6 @@ LARGEST_BLOCK = 400_000
 """Pairs of one block of rows: bounds its memory to about 100 MB."""
 CACHE_SIZE = 24_000
 """Kernel evaluations at a time: about ten arrays of them stay in the second-level cache."""
-FEW = 100
-"""Pairs near the points that do not have a rule of their own: setting out for it takes as long as more Gauss points."""
 SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which the elements that are far from a block of points share a rule."""
 
@@ -289,8 +287,8 @@ class Influence:
         nodes[:, 0], nodes[:, 1] = tau.real.T, tau.imag.T
         at = np.append(on_element, near)
         T[..., at], U[..., at] = kernels.components(kernels.with_root_split_off(on.and_those(beside)), self.factors)
-        for tier, at in _worthwhile_groups(tiers):
-            rule = self._rules[tier]
+        for tier in np.unique(tiers[tiers >= 0]).tolist():
+            at, rule = np.flatnonzero(tiers == tier), self._rules[tier]
             T[..., at], U[..., at] = kernels.regular(kernels.numerators(nodes[..., at], rule), rule, with_U=True)
         shape = (len(element), len(base))
         T, U = T.reshape(4, 3, *shape), U.reshape(3, 3, *shape)
@@ -325,17 +323,6 @@ class Influence:
         row = np.flatnonzero(corner >= 0)
         for diagonal in range(2):
             block.F[diagonal, corner[row], row] += self.factors.normal * -self.inner_angles[corner[row]]
-
-
-def _worthwhile_groups(tiers: IntArray) -> Iterator[tuple[int, IntArray]]:
-    """Tiers with the pairs that take their rules: few pairs take the next finer rule; those of tier -1 take none."""
-    order = np.argsort(tiers, kind="stable")
-    ends = np.searchsorted(tiers[order], np.arange(-1, len(reference_element.ORDERS)), side="right").tolist()
-    first = ends[0]
-    for tier, end in enumerate(ends[1:]):
-        if end - first >= FEW or (end == len(tiers) and end > first):
-            yield tier, order[first:end]
-            first = end
 
 
 def _places(of: IntArray, count: int) -> IntArray:
