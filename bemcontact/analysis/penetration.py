@@ -130,8 +130,9 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
 def _without_details(line: Array, length: float) -> Array:
     """The line (k, 2) with no two points inside one part of this length."""
     along = np.append(0.0, np.hypot(*np.diff(line, axis=0).T).cumsum())
-    _, kept = np.unique(np.floor(along / length), return_index=True)
-    return line[np.union1d(kept, [len(line) - 1])]
+    kept = np.diff(np.floor(along / length), prepend=-1.0) > 0
+    kept[-1] = True
+    return line[kept]
 
 
 def _crossing(loops: Sequence[Array], gaps: SurfaceGaps) -> Array | None:

@@ -179,11 +179,11 @@ def _condensation(body: Body, system: System, response: Response) -> Condensatio
 def _observe(system: System, response: Response) -> Array:
     """Normal displacement (n, s + n) over L0 at the contact points due to the unknowns."""
     points = system.points
-    result = np.zeros((len(points), response.columns))
+    result = np.zeros((response.columns, len(points)))
     for normal, column in zip(points.normals.T, system.unknowns.displacement[points.node].T, strict=True):
-        free = column >= 0
-        result[free] += normal[free, None] * response.rows(column[free])
-    return result
+        free = np.flatnonzero(column >= 0)
+        result[:, free] += normal[free] * response.rows(column[free]).T
+    return result.T
 
 
 def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> BoundaryState:

@@ -250,9 +250,10 @@ def boundary_values(problem: Problem, mesh: Mesh) -> BoundaryValues:
             values.displacement_given[nodes, axis] = True
             values.traction_unknown[elements, axis] = True
             owner[nodes, axis] = index
-        values.traction[elements] = applied_traction(
-            condition, mesh.nodes[mesh.elements[elements]], mesh.normals[elements]
-        )
+        if condition.presses:
+            values.traction[elements] = applied_traction(
+                condition, mesh.nodes[mesh.elements[elements]], mesh.normals[elements]
+            )
     if issues:
         raise ProblemError(issues)
     return values

@@ -56,9 +56,9 @@ class Outline:
         local, free = np.tile(SAMPLES, (len(of_edge), 1)), np.ones((len(of_edge), len(SAMPLES)), bool)
         free[:, NODES] = False
         for number, edge in enumerate(self.problem.boundary.edges):
-            own = np.flatnonzero(of_edge == number)
             for name, zone in self.problem.contact_zones.items():
                 for place in _narrow_places(edge, zone.surface, paired=edge.name in self.problem.edges_of(name)):
+                    own = np.flatnonzero(of_edge == number)
                     element = own[min(int(np.searchsorted(fractions[own, 1], place)), len(own) - 1)]
                     first, last = fractions[element]
                     xi = 2 * (place - first) / (last - first) - 1

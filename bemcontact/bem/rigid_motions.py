@@ -299,13 +299,14 @@ def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTool
         to_points=to_points,
         radius=of_body.radius,
     )
-    held = np.pad(of_body.coefficients, ((0, 0), (0, 3 * t)))
-    guided = np.eye(3 + 3 * t)[3:][tools.free]
-    (body, lost), (loaded, idle) = _split(basis, held), _split(basis, guided)
-    both = np.vstack([body, loaded])
-    together = _null_vectors(basis @ both.T)
-    apart = _null_vectors(together[: len(body)].T)
-    seen, unseen = np.vstack([echelon(apart.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
+    held = np.hstack([of_body.coefficients, np.zeros((len(of_body), 3 * t))])
+    seen, unseen = _split(basis, held)
+    if tools.free.any():
+        (body, lost), (loaded, idle) = (seen, unseen), _split(basis, np.eye(3 + 3 * t)[3:][tools.free])
+        both = np.vstack([body, loaded])
+        together = _null_vectors(basis @ both.T)
+        apart = _null_vectors(together[: len(body)].T)
+        seen, unseen = np.vstack([echelon(apart.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
     return replace(every, coefficients=_counterclockwise(seen)), replace(every, coefficients=_counterclockwise(unseen))
 
 
