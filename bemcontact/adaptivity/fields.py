@@ -11,7 +11,7 @@ from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import footprint
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
-from bemcontact.bem.condense import Condensation, Condenser, boundary_change, boundary_state, condensed
+from bemcontact.bem.condense import Condensation, boundary_change, boundary_state, condensed
 from bemcontact.bem.mesh import BoundaryState, Mesh
 from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.contact.load_cases import Change
@@ -148,10 +148,14 @@ class Solved:
         return np.hypot(tangents[..., 0], tangents[..., 1]) * weights
 
 
-def solved(problem: Problem, condenser: Condenser = condensed) -> Solved:
-    """Solve a problem on its mesh, under the case that acts or each one; `SolverError` without a contact state."""
-    condensation = condenser(problem)
-    runs = tuple(zone_runs(condensation.body))
+def solved(problem: Problem) -> Solved:
+    """Condense and solve a problem on its mesh; `SolverError` without a contact state."""
+    return solved_state(condensed(problem))
+
+
+def solved_state(condensation: Condensation) -> Solved:
+    """Solve a condensed problem, under the case that acts or each one; `SolverError` without a contact state."""
+    problem, runs = condensation.body.problem, tuple(zone_runs(condensation.body))
     names = (None,) if problem.case is not None or not problem.load_cases else problem.case_names
     answers = tuple(_answer(condensation.acting(name), runs) for name in names)
     return Solved(condensation=condensation, runs=runs, answers=answers)
