@@ -25,7 +25,6 @@ from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import BoundaryValues, Mesh
 from bemcontact.bem.response import Response
 from bemcontact.bem.rigid_motions import RigidMotions
-from bemcontact.blas_threads import one_thread
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
 from bemcontact.problem.material import Material
@@ -449,8 +448,7 @@ def solve_system(system: System) -> Response:
     matrix, right = assemble(system)
     keep = matrix.nbytes <= LARGEST_COPY
     order, count = system.contact_last() if keep else (np.arange(system.size), system.size)
-    with one_thread.lifted(system.size):
-        lu = LU.of(matrix.T[order].T if keep else matrix, overwrite=True)
+    lu = LU.of(matrix.T[order].T if keep else matrix, overwrite=True)
     if lu.reciprocal_condition < SINGULAR:
         raise SingularSystemError(
             "the equations of the body have no unique solution (reciprocal condition number "
@@ -458,8 +456,7 @@ def solve_system(system: System) -> Response:
             "length"
         )
     left = (lambda x, weights: right @ weights - matrix @ x) if keep else partial(residual, system)
-    with one_thread.lifted(system.size):
-        return Response.of(lu, order, count, right, len(system.loadings), left)
+    return Response.of(lu, order, count, right, len(system.loadings), left)
 
 
 def residual(system: System, solution: Array, weights: Array) -> Array:
