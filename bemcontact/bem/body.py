@@ -23,7 +23,8 @@ from bemcontact.bem.rigid_motions import (
     placed_tools,
     toward,
 )
-from bemcontact.bem.system import System, solve_system
+from bemcontact.bem.solution import solve_system
+from bemcontact.bem.system import System
 from bemcontact.checks.memory import ensure_memory
 from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, KeyPath, ProblemError

@@ -14,7 +14,8 @@ from bemcontact.bem.body import Body, body_of, ensure_held
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.response import Response
 from bemcontact.bem.rigid_motions import all_rigid_motions
-from bemcontact.bem.system import System, solve_system
+from bemcontact.bem.solution import solve_system
+from bemcontact.bem.system import System
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import Gauge, MotionAlgebra, fix_gauge
 from bemcontact.contact.load_cases import LoadCases, Tools
