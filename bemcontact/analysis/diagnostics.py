@@ -4,15 +4,14 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import null_space, orth
 
 from bemcontact.adaptivity.zone_runs import SAME
 from bemcontact.analysis.spline_bulges import bulging
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.bem.body import Body
-from bemcontact.bem.contact_points import element_lengths
 from bemcontact.bem.mesh import CORNER
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problem.surface_lines import Polyline, Spline
 
@@ -106,7 +105,7 @@ def hardly_held(
     One without any slope has another note if motions are `undetermined`.
     """
     motions = body.seen.coefficients  # (k, 3 + 3 t): x, y and turn of the body, then of tools
-    moved = orth(motions.T @ null_space(motions[:, 2:].T))  # pure translations of the body, orthonormal
+    moved = np.linalg.qr(motions.T @ unseen_ways(motions[:, 2:].T, LEVEL))[0]  # pure translations of the body
     if not touching.any() or not moved.size:
         return
     changes = contact.rigid_motions[touching] @ np.linalg.lstsq(motions.T, moved)[0]
@@ -212,7 +211,7 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
 def long_neighbors(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     """Note where contact reaches the end of a zone and the elements beyond it are much longer."""
     mesh, points = body.mesh, body.points
-    lengths, in_zone = element_lengths(mesh), np.isin(np.arange(len(mesh.elements)), points.element)
+    lengths, in_zone = mesh.lengths, np.isin(np.arange(len(mesh.elements)), points.element)
     for i in np.flatnonzero(touching & (points.node < len(mesh.elements))):
         after, before = points.node[i], mesh.before[points.node[i]]
         outside, inside = (before, after) if in_zone[after] else (after, before)

@@ -11,6 +11,7 @@ from bemcontact.arrays import Array, nonnegative_fit
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
 from bemcontact.bem.mesh import Mesh, build
+from bemcontact.bem.outline import Outline
 from bemcontact.bem.rigid_motions import (
     BODY,
     UNSEEN,
@@ -59,6 +60,7 @@ class Body:
     Parameters
     ----------
     problem, mesh, points : the problem, its mesh and its contact points
+    outline : the curves under the elements, as drawn
     loadings : 1 + c, the permanent loading, then the addition of each load case
     tools : rigid surfaces that move
     motions : all rigid motions of the body that the conditions leave free
@@ -68,6 +70,7 @@ class Body:
 
     problem: Problem
     mesh: Mesh
+    outline: Outline
     points: ContactPoints
     loadings: tuple[Loading, ...]
     tools: PlacedTools
@@ -125,9 +128,19 @@ class Body:
         return motions.body.along_normals(self.points) + self.tools.motions @ motions.tools
 
     @cached_property
+    def seen_motion(self) -> Array:
+        """R (n, k): change of the gaps in the seen motions."""
+        return self.normal_motion(self.seen)
+
+    @cached_property
+    def seen_load(self) -> Array:
+        """Work (k, 1 + c) of each loading in the seen motions, as of `motion_load`."""
+        return self.motion_load(self.seen)
+
+    @cached_property
     def relative_load(self) -> tuple[Array, Array]:
         """R (n, k) without round-off, and the load (k,) that acts in the seen motions, relative to the largest."""
-        R, load = self.normal_motion(self.seen), self.motion_load(self.seen) @ self.factors
+        R, load = self.seen_motion, self.seen_load @ self.factors
         largest = abs(load).max(initial=0.0)
         none = largest <= BALANCED * self.pinned.total(self.factors, self.forces)
         return np.where(abs(R) > UNSEEN, R, 0.0), np.zeros_like(load) if none else load / largest
@@ -212,16 +225,17 @@ def body_of(problem: Problem) -> Body:
     body. A problem with load cases of which none acts is meshed without this check.
     """
     mesh = build(problem)
+    outline = Outline(problem=problem, mesh=mesh)
     ensure_memory(MATRICES * 8 * mesh.degrees_of_freedom**2)
     _ensure_before_surfaces(problem, mesh)
     permanent, cases = permanent_loading(problem, mesh), case_loadings(problem, mesh)
     added = [loading.values for loading in cases]
-    points = contact_points(problem, mesh, permanent.values, deflections(problem, mesh), added)
+    points = contact_points(outline, permanent.values, deflections(problem, mesh), added)
     tools = placed_tools(problem, points)
     motions = free_rigid_motions(mesh, permanent.values.displacement_given)
     seen, unseen = free_motions(points, motions, tools)
     body = Body(
-        problem=problem, mesh=mesh, points=points, loadings=(permanent, *cases), tools=tools,
+        problem=problem, mesh=mesh, outline=outline, points=points, loadings=(permanent, *cases), tools=tools,
         motions=motions, seen=seen, unseen=unseen,
     )  # fmt: skip
     if problem.case is not None or not problem.load_cases:

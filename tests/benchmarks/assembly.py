@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf
 
 from bemcontact.bem.body import body_of
-from bemcontact.bem.system import System, assemble, machine_code
+from bemcontact.bem.solution import assemble
+from bemcontact.bem.system import System, machine_code
 from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]
