@@ -15,8 +15,9 @@ from skfem import MeshTri2
 
 ORDER = 4
 """Of the quadrature; 6 takes 15 % longer and changes no error."""
-COARSE = 0.3
-"""Largest side of the triangles that are refined, of the lower side; they have corners at kinks and at the end."""
+COARSE, LAYERS = 0.3, 2
+"""Largest side of the triangles that are bisected, of the lower side, and layers of these. Theirs is the wanted length
+times a power of two, so that any length can be had. They have corners at kinks and at the end of contact."""
 GROWTH = 2.0
 """Length of sides over the distance from the zone, times the relative length in it."""
 GRADING, SMALLEST = 0.7, 0.003
@@ -75,9 +76,16 @@ class Pressed:
             return length(x, y) + GROWTH * size * away
 
         fixed = np.unique([0, *self.along(np.array([*self.kinks, end])), *self.corners, 1])
-        parts = np.ceil(np.diff(fixed) / COARSE).astype(int)
+        spacing = size * float(self.along(np.array(end)))
+        spacing *= 2 ** np.floor(np.log2(COARSE / spacing))
+        parts = np.ceil(np.diff(fixed) / spacing).astype(int)
         along = [np.linspace(*ends, n, endpoint=False) for *ends, n in zip(fixed, fixed[1:], parts, strict=False)]
-        return locally_refined(np.append(np.concatenate(along), 1.0), np.linspace(0, 1, 3), self.place, wanted)
+        return locally_refined(
+            np.append(np.concatenate(along), 1.0),
+            np.linspace(0, 1, round(LAYERS * COARSE / spacing) + 1),
+            self.place,
+            wanted,
+        )
 
     def solve(self, mesh: MeshTri2) -> Touch:
         """Set up the equations, factorize and condense them, and solve the contact."""
