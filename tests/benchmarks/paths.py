@@ -7,12 +7,11 @@ so many parts, 9 if none are given. "Direct" is the primal-dual active set, whic
 """
 
 import sys
-import time
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from timing import best_of
 
 import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -21,18 +20,7 @@ from bemcontact.parametric.path import load_path
 
 MODELS = Path(__file__).parents[2] / "models"
 NAMES = ("cylinder_on_plane", "cantilever_flat_surface", "gallery/three_zones")
-REPEATS = 3
 FINE = 9
-
-
-def best_of(action: Callable[[], object]) -> float:
-    """Shortest of a few runs, in seconds."""
-    seconds = []
-    for _ in range(REPEATS):
-        begin = time.perf_counter()
-        action()
-        seconds.append(time.perf_counter() - begin)
-    return min(seconds)
 
 
 def row(contact: CondensedContact) -> str:
