@@ -24,7 +24,8 @@ MEAN, LARGEST = 2.0, {400: 3.0, 800: 3.0}
 """Time over that of the peer that was asked for: geometric mean, and of QP1 by contact points."""
 
 TEXT = """\
-QP1 and QP2 of random half-planes, raw and scaled, programs that have no minimizer{folder}. Each solver starts from
+QP1 and QP2 of random half-planes, raw and scaled, programs that have no minimizer{folder}.
+Each solver starts from
 zero, in a process of its own, and runs up to five times. The time is the median CPU time of a whole call. Each
 program is given to all solvers before the next one. Each result is judged from its point alone, as on the page
 [Solvers](solvers.md). *our time / its* is the geometric mean over the programs that both solved to a point that

@@ -15,8 +15,8 @@ STAGES = ("mesh", "solution", "recovery", "assessment")
 
 TEXT = """\
 `bemcontact.solve` with the direct solver, for the cylinder of the paper that is read already: its variant `stated
-mesh` with each element cut into equal parts, and the problem as it stands, for which a mesh is searched (accuracy 1
-%). The stages are those that a result reports: *mesh* is the condensation, with the search for a mesh if there is
+mesh` with each element cut into equal parts, and the problem as it stands, for which a mesh is searched (accuracy
+1 %). The stages are those that a result reports: *mesh* is the condensation, with the search for a mesh if there is
 one. They are the least wall times of several runs.
 """
 
