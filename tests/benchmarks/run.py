@@ -22,7 +22,7 @@ from pathlib import Path
 
 from machine import described, load
 from pydantic import ValidationError
-from speed_page import RUN, SECTION, Outcome, Run, markdown
+from speed_page import RUN, SECTION, Outcome, Run, Settings, markdown
 
 SECTIONS = {
     "condensation": "speed_of_condensation",
@@ -34,23 +34,21 @@ SECTIONS = {
     "start_up": "speed_of_start_up",
     "studies": "speed_of_studies",
 }
-"""Module of each section by name; its function `measure(quick, say)` returns a `Section`."""
+"""Module of each section by name; its function `measure(settings, say)` returns a `Section`."""
 LIMIT = 1200
 """Seconds after which a section is ended."""
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 FREE = ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE")
 """Settings of BLAS that are taken away, so that all machines choose by themselves."""
-FOLDER_OF_INSTANCES = "BEMCONTACT_INSTANCES"
-"""Name in the environment of the folder with quadratic programs, for `local_solver`."""
 
 
-def measured(name: str, into: Path, quick: bool) -> None:
+def measured(name: str, into: Path, settings: Settings) -> None:
     """Measure a section in this process, and write it."""
 
     def say(words: str) -> None:
         print(f"  {name}: {words}", flush=True)
 
-    section = importlib.import_module(SECTIONS[name]).measure(quick, say)
+    section = importlib.import_module(SECTIONS[name]).measure(settings, say)
     into.write_bytes(SECTION.dump_json(section))
 
 
@@ -118,15 +116,16 @@ def write(folder: Path, run: Run) -> None:
     (folder / "speed.json").write_bytes(RUN.dump_json(run, indent=1))
 
 
-def run_all(names: list[str], folder: Path, quick: bool) -> Run:
+def run_all(names: list[str], folder: Path, settings: Settings) -> Run:
     """Run sections, and write the page after each of them."""
     folder.mkdir(parents=True, exist_ok=True)
-    run = Run(date=date.today().isoformat(), load=load(), quick=quick, machine=described(), outcomes={})
+    today, machine = date.today().isoformat(), described()
+    run = Run(date=today, load=load(), quick=settings.quick, machine=machine, names=[*SECTIONS], outcomes={})
     run = replace(run, outcomes=before(folder / "speed.json", run))
     for number, name in enumerate(names, 1):
         print(f"[{number}/{len(names)}] {name}", flush=True)
         into = folder / f"{name}.json.new"
-        command = [sys.executable, __file__, "--only", name, "--into", str(into), *["--quick"] * quick]
+        command = [sys.executable, __file__, "--only", name, "--into", str(into), *arguments_of(settings)]
         with removed(into):
             done = outcome(command, into)
         run = replace(run, outcomes={**run.outcomes, name: done})
@@ -135,6 +134,12 @@ def run_all(names: list[str], folder: Path, quick: bool) -> Run:
         if done.failed.startswith(INTERRUPTED):
             break
     return run
+
+
+def arguments_of(settings: Settings) -> list[str]:
+    """The settings for the command line."""
+    folder = ["--instances", str(settings.instances)] if settings.instances else []
+    return ["--quick", *folder] if settings.quick else folder
 
 
 @contextmanager
@@ -161,12 +166,11 @@ def arguments() -> argparse.Namespace:
 
 def main() -> int:
     given = arguments()
-    if given.instances:
-        os.environ[FOLDER_OF_INSTANCES] = str(given.instances.resolve())
+    settings = Settings(quick=given.quick, instances=given.instances)
     if given.into:
-        measured(given.only[0], given.into, given.quick)
+        measured(given.only[0], given.into, settings)
         return 0
-    run = run_all(given.only, given.out, given.quick)
+    run = run_all(given.only, given.out, settings)
     print(f"written: {given.out / 'speed.md'} and {given.out / 'speed.json'}")
     return 1 if run.failed else 0
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf
 from speed_cylinder import assembled_by, codes, cylinder
-from speed_page import Section, Table, Target
+from speed_page import Section, Settings, Table, Target
 from timing import Seconds, in_turns
 
 import bemcontact
@@ -71,14 +71,14 @@ def times_of(problem: bemcontact.Problem, rounds: int) -> tuple[System, dict[str
     return system, in_turns(actions, rounds)
 
 
-def measure(quick: bool, say: Callable[[str], None]) -> Section:
+def measure(settings: Settings, say: Callable[[str], None]) -> Section:
     """Measure all sizes."""
     rows, targets, raw = [], [], {}
     names = codes()
-    for refine in REFINE[: 2 if quick else None]:
+    for refine in REFINE[: 2 if settings.quick else None]:
         problem = cylinder(refine)
         say(f"each element cut into {refine}")
-        system, times = times_of(problem, 1 if quick else 3)
+        system, times = times_of(problem, 1 if settings.quick else 3)
         size, cpu = system.mesh.degrees_of_freedom, {name: item.cpu for name, item in times.items()}
         lu = cpu["LU and copy"] - cpu["copy"]
         raw[str(size)] = {**cpu, "LU": lu, "points": len(system.points)}

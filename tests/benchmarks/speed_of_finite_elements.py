@@ -8,7 +8,7 @@ import boundary_elements_pressed as boundary_elements
 import finite_elements_pressed as finite_elements
 from finite_elements_pressed import Pressed
 from pressure_error import Pressure, relative_error
-from speed_page import Section, Table, Target
+from speed_page import Section, Settings, Table, Target
 from timing import in_turns
 
 import bemcontact
@@ -251,16 +251,16 @@ def targets(points: Sequence[Point]) -> list[Target]:
     return [Target(name="cylinder to 1 %: unknowns (graded)", asked=UNKNOWNS, measured=unknowns), *asked]
 
 
-def measure(quick: bool, say: Callable[[str], None]) -> Section:
+def measure(settings: Settings, say: Callable[[str], None]) -> Section:
     """Compare both programs on both bodies."""
     found: list[Table] = []
     asked: list[Target] = []
     raw = {}
     for name in BODIES:
         say(f"{name}, reference")
-        result = comparison(name, quick)
+        result = comparison(name, settings.quick)
         say(f"{name}, all meshes")
-        result.points.extend(result.measured(quick))
+        result.points.extend(result.measured(settings.quick))
         found += tables(name, result)
         raw[name] = {"reference": result.unknowns, "checked": result.checked, "end": result.end,
                      "points": [vars(point) for point in result.points]}  # fmt: skip

@@ -8,7 +8,7 @@ from functools import partial
 
 from children import children_seconds
 from speed_cylinder import MESH, MODEL, cylinder
-from speed_page import Section, Table, Target
+from speed_page import Section, Settings, Table, Target
 from timing import in_turns, least
 
 import bemcontact
@@ -48,20 +48,22 @@ def certified(contact: bemcontact.CondensedContact, way: dict) -> int | None:
     return result.solution.iterations
 
 
-def measure(quick: bool, say: Callable[[str], None]) -> Section:
+def measure(settings: Settings, say: Callable[[str], None]) -> Section:
     """Measure all sizes."""
     rows, iterations, raw = [], [], {}
-    for refine in REFINE[: 2 if quick else None]:
+    for refine in REFINE[: 2 if settings.quick else None]:
         contact = bemcontact.condense(cylinder(refine))
         n = len(contact.points)
         say(f"{n} contact points")
         counts = [certified(contact, way) for way in ways().values()]
-        times = in_turns({name: partial(certified, contact, way) for name, way in ways().items()}, 1 if quick else 2)
+        times = in_turns(
+            {name: partial(certified, contact, way) for name, way in ways().items()}, 1 if settings.quick else 2
+        )
         rows.append([n, *(1e3 * item.cpu for item in times.values())])
         iterations.append([n, *counts])
         raw[str(n)] = {name: vars(item) for name, item in times.items()}
     say("compare")
-    parts = 2 if quick else COMPARED
+    parts = 2 if settings.quick else COMPARED
     command = [sys.executable, "-m", "bemcontact", "compare", str(MODEL), "--variant", MESH, "--refine", str(parts)]
     taken = least(children_seconds(lambda: subprocess.run(command, check=True, capture_output=True)) for _ in range(2))
     raw["compare"] = vars(taken)
@@ -76,5 +78,5 @@ def measure(quick: bool, say: Callable[[str], None]) -> Section:
         whole,
     ]
     name = f"`compare` of the cylinder, elements cut into {parts}, wall"
-    targets = [] if quick else [Target(name=name, asked=LARGEST_COMPARISON, measured=taken.wall, unit="s")]
+    targets = [] if settings.quick else [Target(name=name, asked=LARGEST_COMPARISON, measured=taken.wall, unit="s")]
     return Section(title="Formulations", text=TEXT, tables=tables, targets=targets, raw=raw)

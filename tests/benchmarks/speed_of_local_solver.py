@@ -1,15 +1,13 @@
 """The local solver beside the other solvers that are installed, on the same programs."""
 
-import os
 import statistics
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 from judgement import judge
 from local_solver import COLUMNS, OURS, Trial, count
 from peers import PEERS, Peer, run
 from qp_instance import Instance, contact_instances, half_plane, qp1, read_folder, status_instances
-from speed_page import Section, Table, Target
+from speed_page import Section, Settings, Table, Target
 from timing import geometric_mean
 
 LIMIT = 10.0
@@ -25,11 +23,10 @@ MEAN, LARGEST = 2.0, {400: 3.0, 800: 3.0}
 
 TEXT = """\
 QP1 and QP2 of random half-planes, raw and scaled, programs that have no minimizer{folder}.
-Each solver starts from
-zero, in a process of its own, and runs up to five times. The time is the median CPU time of a whole call. Each
-program is given to all solvers before the next one. Each result is judged from its point alone, as on the page
-[Solvers](solvers.md). *our time / its* is the geometric mean over the programs that both solved to a point that
-fulfills the first-order conditions. Peers that are not installed: {absent}.
+Each solver starts from zero, in a process of its own, and runs up to five times. The time is the median CPU time of a
+whole call. Each program is given to all solvers before the next one. Each result is judged from its point alone, as
+on the page [Solvers](solvers.md). *our time / its* is the geometric mean over the programs that both solved to a
+point that fulfills the first-order conditions. Peers that are not installed: {absent}.
 """
 
 
@@ -83,16 +80,16 @@ def large(
     return Table(title="QP1 of a half-plane with n contact points, CPU s", columns=columns, rows=rows), ratios
 
 
-def measure(quick: bool, say: Callable[[str], None]) -> Section:
-    """Measure all programs, those of a folder that is named in the environment included."""
-    folder = os.environ.get("BEMCONTACT_INSTANCES", "")
-    instances = [*(read_folder(Path(folder)) if folder else ()), *status_instances()]
-    instances += contact_instances(list(NODES[:1] if quick else NODES), SEEDS)
+def measure(settings: Settings, say: Callable[[str], None]) -> Section:
+    """Measure all programs, those of the folder included."""
+    folder = settings.instances
+    instances = [*(read_folder(folder) if folder else ()), *status_instances()]
+    instances += contact_instances(list(NODES[:1] if settings.quick else NODES), SEEDS)
     peers = [OURS, *(peer for peer in PEERS if peer.installed)]
     absent = [peer.name for peer in PEERS if not peer.installed]
     done = tried(peers, instances, LIMIT, say)
     second, ratios = large(
-        [peer for peer in peers if peer.name in (OURS.name, PEER)], LARGE[: 1 if quick else None], say
+        [peer for peer in peers if peer.name in (OURS.name, PEER)], LARGE[: 1 if settings.quick else None], say
     )
     means = {peer.name: ratio(done[0], trials) for peer, trials in zip(peers, done, strict=True)}
     targets = [Target(name=f"local solver over {PEER}, geometric mean", asked=MEAN, measured=means.get(PEER))]

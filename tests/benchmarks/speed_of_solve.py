@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from speed_cylinder import MODEL, assembled_by, codes, cylinder
-from speed_page import Section, Table
+from speed_page import Section, Settings, Table
 from timing import Seconds, least, seconds_of
 
 import bemcontact
@@ -47,14 +47,16 @@ def solves(problem: bemcontact.Problem, rounds: int) -> dict[str, Solves]:
     return done
 
 
-def measure(quick: bool, say: Callable[[str], None]) -> Section:
+def measure(settings: Settings, say: Callable[[str], None]) -> Section:
     """Measure all sizes."""
     rows, raw = [], {}
-    problems = {f"stated mesh, cut into {refine}": cylinder(refine) for refine in REFINE[: 2 if quick else None]}
+    problems = {
+        f"stated mesh, cut into {refine}": cylinder(refine) for refine in REFINE[: 2 if settings.quick else None]
+    }
     problems["mesh found"] = bemcontact.load(MODEL)
     for name, problem in problems.items():
         say(name)
-        for code, its in solves(problem, 3 if quick else ROUNDS).items():
+        for code, its in solves(problem, 3 if settings.quick else ROUNDS).items():
             result, taken = its.results[0], least(its.runs)
             stages = {stage: its.stage(stage) for stage in STAGES}
             milliseconds = [1e3 * item for item in (taken.cpu, *stages.values())]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from children import children_seconds
 from speed_cylinder import MESH, MODEL
-from speed_page import Section, Table, Target
+from speed_page import Section, Settings, Table, Target
 from timing import least
 
 BASE = "numpy, scipy.linalg, pydantic, yaml"
@@ -37,10 +37,10 @@ def run(arguments: list[str]) -> None:
     subprocess.run([sys.executable, *arguments], check=True, capture_output=True)
 
 
-def measure(quick: bool, say: Callable[[str], None]) -> Section:
+def measure(settings: Settings, say: Callable[[str], None]) -> Section:
     """Measure all commands."""
     taken: dict[str, list] = {name: [] for name in commands()}
-    for number in range(2 if quick else 8):
+    for number in range(2 if settings.quick else 8):
         say(f"round {number + 1}")
         for name, arguments in commands().items():
             taken[name].append(children_seconds(lambda arguments=arguments: run(arguments)))

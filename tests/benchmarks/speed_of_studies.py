@@ -9,7 +9,7 @@ from pathlib import Path
 
 from children import children_seconds
 from speed_cylinder import MODEL
-from speed_page import Section, Table, Target
+from speed_page import Section, Settings, Table, Target
 from timing import Seconds, least
 
 MEMBERS, FEW = 1000, 40
@@ -33,10 +33,10 @@ def study(members: int, workers: int) -> None:
         subprocess.run([*command, "--workers", str(workers), "--out", str(out)], check=True, capture_output=True)
 
 
-def measure(quick: bool, say: Callable[[str], None]) -> Section:
+def measure(settings: Settings, say: Callable[[str], None]) -> Section:
     """Measure with each number of workers, in turns."""
-    members, taken = FEW if quick else MEMBERS, {workers: [] for workers in WORKERS}
-    for number in range(1 if quick else 2):
+    members, taken = FEW if settings.quick else MEMBERS, {workers: [] for workers in WORKERS}
+    for number in range(1 if settings.quick else 2):
         for workers in WORKERS:
             say(f"round {number + 1}, workers: {workers}")
             taken[workers].append(children_seconds(lambda workers=workers: study(members, workers)))
@@ -51,7 +51,7 @@ def measure(quick: bool, say: Callable[[str], None]) -> Section:
         Target(name=f"study of {members} members, two workers, wall", asked=LONGEST, measured=times[2].wall, unit="s"),
         Target(name="study: times as fast with two workers", asked=FASTER, at_least=True, measured=gain),
     ]
-    enough = (os.cpu_count() or 1) >= 2 and not quick
+    enough = (os.cpu_count() or 1) >= 2 and not settings.quick
     raw = {str(workers): [vars(run) for run in runs] for workers, runs in taken.items()}
     return Section(
         title="Studies",

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 from speed_cylinder import codes, cylinder
 from speed_of_condensation import condense_by, factorize, system_of
-from speed_page import Section, Table
+from speed_page import Section, Settings, Table
 from threadpoolctl import threadpool_info, threadpool_limits
 from timing import Seconds, in_turns
 
@@ -43,11 +43,11 @@ def ensure_threads(count: int) -> None:
         raise RuntimeError(f"BLAS takes {taken} threads, not {count}")
 
 
-def measure(quick: bool, say: Callable[[str], None]) -> Section:
+def measure(settings: Settings, say: Callable[[str], None]) -> Section:
     """Measure all sizes."""
     ensure_threads(max(THREADS))
     code, rows, raw = codes()[-1], [], {}
-    for refine in (4,) if quick else REFINE:
+    for refine in (4,) if settings.quick else REFINE:
         say(f"each element cut into {refine}")
         problem = cylinder(refine)
         system = system_of(problem)
@@ -56,7 +56,7 @@ def measure(quick: bool, say: Callable[[str], None]) -> Section:
                    f"condensation, {code}": lambda problem=problem: condense_by(code, problem)}  # fmt: skip
         times = in_turns(
             {(name, count): limited(count, action) for name, action in actions.items() for count in THREADS},
-            1 if quick else 3,
+            1 if settings.quick else 3,
         )
         size = system.mesh.degrees_of_freedom
         rows += [[size, name, *_compared(times[name, 1], times[name, 2])] for name in actions]

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from pydantic import JsonValue, TypeAdapter
 
@@ -85,6 +86,20 @@ class Section:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Settings:
+    """What a run is asked for.
+
+    Parameters
+    ----------
+    quick : fewer and smaller problems
+    instances : folder with quadratic programs (.npz) for the local solver, besides those that are made
+    """
+
+    quick: bool = False
+    instances: Path | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class Outcome:
     """How a section ended: with what it measured, or with the reason why it failed."""
 
@@ -95,13 +110,23 @@ class Outcome:
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """All sections of a run."""
+    """All sections of a run.
+
+    Parameters
+    ----------
+    date : when it began
+    load : mean number of processes that wanted to run in the minute before
+    quick : with fewer and smaller problems
+    machine : names and values
+    names : of all sections there are
+    outcomes : of those that ran, by name
+    """
 
     date: str
     load: float
-    """Mean number of processes that wanted to run in the minute before."""
     quick: bool
     machine: Mapping[str, str]
+    names: Sequence[str]
     outcomes: Mapping[str, Outcome]
 
     @property
@@ -122,9 +147,11 @@ def markdown(run: Run) -> str:
 def _beginning(run: Run) -> Iterator[str]:
     """Date, machine and failures."""
     took = sum(outcome.seconds for outcome in run.outcomes.values())
-    yield f"The run of {run.date} took {took / 60:.0f} minutes. The load of the machine before was {run.load:.1f}.\n"
+    yield f"The run of {run.date} took {took / 60:.1f} minutes. The load of the machine before was {run.load:.1f}.\n"
     if run.quick:
         yield "It was a quick run (`--quick`), with fewer and smaller problems.\n"
+    if absent := [name for name in run.names if name not in run.outcomes]:
+        yield f"These sections did not run: {', '.join(absent)}.\n"
     if run.failed:
         yield f"**These sections failed: {', '.join(run.failed)}.**\n"
     yield from _rows(("", ""), list(run.machine.items()))

@@ -2,11 +2,12 @@
 
 import json
 import sys
+from dataclasses import replace
 
 import pytest
 import run
 from run import SECTIONS, before, outcome, write
-from speed_page import RUN, SECTION, Outcome, Run, Section, Table, Target, markdown
+from speed_page import RUN, SECTION, Outcome, Run, Section, Settings, Table, Target, markdown
 from timing import MOST_AT_ONCE, geometric_mean, in_turns
 
 GOOD = Section(
@@ -26,7 +27,8 @@ GOOD = Section(
 
 
 def run_with(**outcomes):
-    return Run(date="2000-01-02", load=0.25, quick=False, machine={"Processor": "abacus"}, outcomes=outcomes)
+    names = ["solve", "studies"]
+    return Run(date="", load=0.25, quick=False, machine={"Processor": "abacus"}, names=names, outcomes=outcomes)
 
 
 def lines(text):
@@ -48,6 +50,16 @@ def test_a_section_that_failed_is_told():
     assert "sections failed: studies" in page
     assert "no disk" in page
     assert "A title" in page
+
+
+def test_a_section_that_did_not_run_is_told():
+    page = markdown(run_with(solve=Outcome(seconds=60.0, section=GOOD)))
+    assert "did not run: studies" in page
+
+
+def test_the_settings_reach_the_process_of_a_section(tmp_path):
+    assert run.arguments_of(Settings()) == []
+    assert run.arguments_of(Settings(quick=True, instances=tmp_path)) == ["--quick", "--instances", str(tmp_path)]
 
 
 def test_a_row_that_does_not_fit_its_columns_is_an_error():
@@ -99,7 +111,7 @@ def test_a_failure_loses_no_other_section(tmp_path, monkeypatch):
         [Outcome(seconds=1.0, section=GOOD), Outcome(seconds=1.0, failed="broken"), Outcome(seconds=1.0, section=GOOD)]
     )
     monkeypatch.setattr(run, "outcome", lambda command, into: next(ends))
-    done = run.run_all(["threads", "solve", "studies"], tmp_path, True)
+    done = run.run_all(["threads", "solve", "studies"], tmp_path, Settings(quick=True))
     assert done.failed == ["solve"]
     assert RUN.validate_json((tmp_path / "speed.json").read_bytes()).failed == ["solve"]
     assert "broken" in (tmp_path / "speed.md").read_text(encoding="utf-8")
@@ -108,7 +120,7 @@ def test_a_failure_loses_no_other_section(tmp_path, monkeypatch):
 def test_an_interrupt_ends_the_run_and_keeps_the_page(tmp_path, monkeypatch):
     ends = iter([Outcome(seconds=1.0, section=GOOD), Outcome(seconds=1.0, failed=run.INTERRUPTED)])
     monkeypatch.setattr(run, "outcome", lambda command, into: next(ends))
-    done = run.run_all(["threads", "solve", "studies"], tmp_path, True)
+    done = run.run_all(["threads", "solve", "studies"], tmp_path, Settings(quick=True))
     assert list(done.outcomes) == ["threads", "solve"]
     assert (tmp_path / "speed.md").is_file()
 
@@ -116,7 +128,7 @@ def test_an_interrupt_ends_the_run_and_keeps_the_page(tmp_path, monkeypatch):
 def test_other_sections_are_kept_from_the_same_machine_only(tmp_path):
     whole = run_with(solve=Outcome(seconds=60.0, section=GOOD))
     write(tmp_path, whole)
-    other = Run(date="", load=0.0, quick=False, machine={"Processor": "slide rule"}, outcomes={})
+    other = replace(run_with(), machine={"Processor": "slide rule"})
     assert before(tmp_path / "speed.json", run_with()).keys() == {"solve"}
     assert before(tmp_path / "speed.json", other) == {}
     (tmp_path / "speed.json").write_text("{}")
