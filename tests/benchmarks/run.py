@@ -29,6 +29,7 @@ SECTIONS = {
     "threads": "speed_on_threads",
     "solve": "speed_of_solve",
     "formulations": "speed_of_formulations",
+    "paths": "speed_of_paths",
     "finite_elements": "speed_of_finite_elements",
     "local_solver": "speed_of_local_solver",
     "start_up": "speed_of_start_up",

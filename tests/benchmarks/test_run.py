@@ -4,11 +4,15 @@ import json
 import sys
 from dataclasses import replace
 
+import numpy as np
 import pytest
 import run
+import speed_of_paths
 from run import SECTIONS, before, outcome, write
 from speed_page import RUN, SECTION, Outcome, Run, Section, Settings, Table, Target, markdown
 from timing import MOST_AT_ONCE, geometric_mean, in_turns
+
+from bemcontact.contact.condensed_contact import CondensedContact
 
 GOOD = Section(
     title="A title",
@@ -152,3 +156,12 @@ def test_actions_run_in_turns():
     times = in_turns({name: lambda name=name: done.append(name) for name in "ab"}, 2)
     assert done[: 2 * MOST_AT_ONCE] == ["a"] * MOST_AT_ONCE + ["b"] * MOST_AT_ONCE
     assert set(times) == {"a", "b"}
+
+
+def test_a_path_is_compared_with_a_solve_at_each_breakpoint():
+    """Two springs of compliance 1 that close at loads 1 and 3: breakpoints at 0, 1/4, 3/4 and the end of the load 4."""
+    springs = CondensedContact.from_compliance(np.eye(2), [1.0, 3.0])
+    contact = replace(springs, free_displacement=np.array([-4.0, -4.0]))
+    _, points, breakpoints, _, apart, *_ = speed_of_paths.row("springs", contact)
+    assert (points, breakpoints) == (2, 4)
+    assert apart < 1e-14
