@@ -10,15 +10,9 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.progress import SearchState
-from bemcontact.formulations.local_solver.statement import Sides, Statement
-from bemcontact.formulations.local_solver.working_set import (
-    INFINITY,
-    BlockingConstraint,
-    WorkingSet,
-    nearest,
-    side_reached,
-    wrong_sign,
-)
+from bemcontact.formulations.local_solver.ratio_test import BlockingConstraint, nearest, side_reached
+from bemcontact.formulations.local_solver.statement import INFINITY, Sides, Statement
+from bemcontact.formulations.local_solver.working_set import WorkingSet, wrong_sign
 
 
 def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> tuple[WorkingSet, Array | None]:
@@ -91,7 +85,7 @@ def _certificate(working: WorkingSet, signs: Array, multipliers: Array) -> Array
 def _step(progress: SearchState, working: WorkingSet, signs: Array, direction: Array, dropped: int | None) -> bool:
     """Move along the direction to the constraint that ends the step, and hold it; False if there is none."""
     length = sqrt(direction.dot(direction))
-    along = progress.statement.values(direction)
+    along = working.values(direction)
     wall = nearest(progress, along, length, working.held | signs.astype(bool), working)
     inner = _breakpoint(progress, signs, along, length, INFINITY if wall is None else wall.step)
     block = inner or wall

@@ -107,17 +107,13 @@ class SearchState:
     @property
     def sharp(self) -> Array:
         """Distance of each constraint from its bound that may be rounding (n + m,)."""
-        size = np.abs(self.x)
-        terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
-        return np.maximum(NEAR * self._slack, 100.0 * EPS * terms)
+        return np.maximum(NEAR * self._slack, 100.0 * EPS * self.statement.terms(np.abs(self.x)))
 
-    @property
-    def allowed(self) -> Array:
-        """Violation of each constraint that a claim may leave (n + m,): a small part of its own terms too."""
-        size = np.abs(self.x)
-        terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
+    def allowed(self, sharp: Array) -> Array:
+        """Violation of each constraint that a claim may leave (n + m,): a small part of its own terms, or `sharp`."""
+        terms = self.statement.terms(np.abs(self.x))
         own = OWN * np.maximum(self.statement.bound_size, OF_TERMS * terms)
-        return np.minimum(2.0 * self.slack, np.maximum(own, self.sharp))
+        return np.minimum(2.0 * self.slack, np.maximum(own, sharp))
 
     def tighten(self) -> None:
         """Reduce the tolerance of the constraints, after a claim failed."""
@@ -183,8 +179,7 @@ class SearchState:
         self.x, self.values = x, self.statement.values(x)
         size = np.abs(x)
         self.far = max(self.far, sqrt(size.dot(size)))
-        terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
-        self.slack = np.maximum(self._slack, 10.0 * EPS * terms)
+        self.slack = np.maximum(self._slack, 10.0 * EPS * self.statement.terms(size))
         self.lowest, self.highest = self.statement.lower - self.slack, self.statement.upper + self.slack
         self.look()
 
@@ -205,7 +200,7 @@ class SearchState:
         self._passed.append(x)
         if len(self._passed) > MANY:
             self._take_in()
-        product = statement.H.dot(x)
+        product = statement.bent(x)
         self.gradient = product + statement.c
         self._terms = max(sqrt(float(product.dot(product)) * self._part), self._least)
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
