@@ -25,9 +25,16 @@ def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> t
     statement, n = progress.statement, progress.x.size
     if not np.count_nonzero(violated_signs(progress)):
         return _with_equalities(statement, sides), None
-    working = WorkingSet(statement, sides)
-    progress.place(working.onto(progress.x))
-    while violated := (signs := _signs_of_others(progress, working)).dot(signs):
+    working = _with_equalities(statement, sides)
+    near = working.onto(progress.x)
+    if progress.loses_digits(near):  # equalities are met one by one
+        working = WorkingSet(statement, sides)
+        near = working.onto(progress.x)
+    progress.place(near)
+    while (violated := (signs := _signs_of_others(progress, working)).dot(signs)) or progress.drifted:
+        if not violated:
+            progress.place(working.onto(progress.x))
+            continue
         gradient = statement.transposed(signs)
         zero = fineness * progress.options.optimality_tolerance * sqrt(violated)
         multipliers = working.multipliers(gradient)

@@ -30,6 +30,9 @@ LOST = EPS
 WORN = 16.0
 """Size of a component before, relative to now or to one, from which its rounding counts."""
 
+DRIFT = 100.0
+"""A point may have lost so many times the rounding of the farthest point on the way to it."""
+
 MANY = 100
 """Largest number of points that are stored before `traveled` is updated."""
 
@@ -105,6 +108,19 @@ class SearchState:
         return bool((self.traveled > WORN * np.maximum(np.abs(self.x), 1.0)).any())
 
     @property
+    def drifted(self) -> bool:
+        """Whether steps from far away may have left more than a small part of a tolerance since `place`."""
+        return self._steps and self._is_far(self.far)
+
+    def loses_digits(self, x: Array) -> bool:
+        """Whether rounding of this point or of one before it is more than a small part of a tolerance."""
+        return self._is_far(max(self.far, sqrt(x.dot(x))))
+
+    def _is_far(self, distance: float) -> bool:
+        """Whether rounding at this distance from zero is more than a small part of a tolerance."""
+        return DRIFT * EPS * distance > self.options.feasibility_tolerance
+
+    @property
     def sharp(self) -> Array:
         """Distance of each constraint from its bound that may be rounding (n + m,)."""
         return np.maximum(NEAR * self._slack, 100.0 * EPS * self.statement.terms(np.abs(self.x)))
@@ -176,7 +192,7 @@ class SearchState:
 
     def place(self, x: Array) -> None:
         """Move to a point, and compute values, slacks and gradient there."""
-        self.x, self.values = x, self.statement.values(x)
+        self.x, self.values, self._steps = x, self.statement.values(x), False
         size = np.abs(x)
         self.far = max(self.far, sqrt(size.dot(size)))
         self.slack = np.maximum(self._slack, 10.0 * EPS * self.statement.terms(size))
@@ -187,6 +203,7 @@ class SearchState:
         """Take a step; `along` is [d; A d], `length` that of the direction. The gradient waits for `look`."""
         self.stalled = 0 if step * length > 1e-11 else self.stalled + 1
         if step > 0.0:
+            self._steps = True
             self.far += step * length
             self.values = self.values + (along if step == 1.0 else step * along)
             self.x = self.values[: self.x.size]

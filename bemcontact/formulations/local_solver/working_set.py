@@ -40,6 +40,12 @@ ALIKE = 1e-12
 FEW_DIGITS = 1e-12
 """Relative rounding of a component of a point on rows beyond which remainders are computed with twice the digits."""
 
+FEW = 100
+"""Number of constraints up to which products with all rows are as fast as with some."""
+
+EXACT = 1e-15
+"""Product of a unit direction with the rows that it does not change, up to which it needs no correction."""
+
 SHARP, WEAR = 1e-12, 1e-8
 """Relative size of a refinement above which refinements are needed, and above which N is computed again."""
 SMALL = 10_000
@@ -128,11 +134,14 @@ class WorkingSet:
 
     def values(self, direction: Array) -> Array:
         """[d; A d] of a direction that changes nothing held."""
-        m, n = self.statement.A.shape
-        if self.size - self.temporary < m:
+        A = self.statement.A
+        m, n = A.shape
+        if 2 * (self.size - self.temporary) < m or n + m <= FEW:
             return self.statement.values(direction)
         values = np.zeros(n + m)
         values[:n] = direction
+        others = np.flatnonzero(~self.held[n:])
+        values[n + others] = A[others].dot(direction)
         return values
 
     @property
@@ -305,7 +314,12 @@ class WorkingSet:
 
     def within(self, direction: Array) -> Array:
         """The direction, made orthogonal to the rows again."""
-        return direction - self.N.dot(self.W.dot(direction)) if self.size else direction
+        if self.size == 0:
+            return direction
+        rest = self.W.dot(direction)
+        if rest.dot(rest) <= EXACT**2 * direction.dot(direction):
+            return direction
+        return direction - self.N.dot(rest)
 
     def _along_variable(self, variable: int) -> Array:
         """The direction that changes a fixed variable and no row."""
