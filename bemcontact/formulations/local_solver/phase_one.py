@@ -24,8 +24,8 @@ def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> t
     """
     statement, n = progress.statement, progress.x.size
     if not np.count_nonzero(violated_signs(progress)):
-        return _with_equalities(statement, sides), None
-    working = _with_equalities(statement, sides)
+        return WorkingSet(statement, _and_equalities(statement, sides), sides != 0), None
+    working = WorkingSet(statement, _and_equalities(statement, sides))
     near = working.onto(progress.x)
     if progress.loses_digits(near):  # equalities are met one by one
         working = WorkingSet(statement, sides)
@@ -56,15 +56,14 @@ def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> t
     if working.number == n and working.sharp and not np.count_nonzero(statement.equality > working.held):
         working.null_space = np.zeros((n, 0))  # a vertex needs no null space
         return working, None
-    return _with_equalities(statement, working.sides), None
+    return WorkingSet(statement, _and_equalities(statement, working.sides), working.held), None
 
 
-def _with_equalities(statement: Statement, sides: Sides) -> WorkingSet:
-    """Working set of these sides and all equalities."""
-    wanted = sides != 0
+def _and_equalities(statement: Statement, sides: Sides) -> Sides:
+    """These sides and those of all equalities."""
     sides = sides.copy()
     sides[statement.equality] = 2
-    return WorkingSet(statement, sides, wanted)
+    return sides
 
 
 def violated_signs(progress: SearchState) -> Array:

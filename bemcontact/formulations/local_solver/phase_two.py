@@ -127,7 +127,7 @@ class ReducedHessian:
     def rounding(self, direction: Array) -> Array:
         """Rounding of each component of a direction that was made conjugate to Z (n,)."""
         size, Z = np.abs(direction), np.abs(self.Z)
-        return EPS * (size + Z.dot(self.statement.absolute[0].dot(size).dot(Z)))
+        return EPS * (size + Z.dot(self.statement.curved(size).dot(Z)))
 
     def clear(self, variable: int) -> None:
         """Set the component of a fixed variable to zero in all directions."""
@@ -266,7 +266,7 @@ class Descent:
         for sweep in range(REFINEMENTS if hessian.size else 1):
             x = working.onto(x)
             if hessian.size:
-                step = hessian.newton(working.reduced(progress.statement.H.dot(x) + progress.statement.c))
+                step = hessian.newton(working.reduced(progress.statement.bent(x) + progress.statement.c))
                 x, self._moved = x + step, largest(step)
                 if sweep and largest(step) <= 1e-14 * max(1.0, largest(x)):
                     break
@@ -370,7 +370,7 @@ class Descent:
         progress, working = self.progress, self.working
         terms = progress.terms(self.multipliers[progress.x.size :], working.W)
         of_rows = terms.dot(np.abs(working.N))
-        rounded = of_rows.dot(np.abs(working.W)) + progress.statement.absolute[0].dot(self._reach(terms))
+        rounded = of_rows.dot(np.abs(working.W)) + progress.statement.curved(self._reach(terms))
         return np.concatenate([np.maximum(terms, ROUNDED * rounded), of_rows])
 
     def _fine_zero(self, multipliers: Array) -> Array:
@@ -392,7 +392,7 @@ class Descent:
         moved = Z.dot(Z.T.dot(terms[:, None] * _phases(size.size)))
         if working.size:
             by_rows = working.N.dot(np.abs(working.W).dot(size)[:, None] * _phases(working.size))
-            by_rows -= Z.dot(Z.T.dot(self.progress.statement.H.dot(by_rows)))
+            by_rows -= Z.dot(Z.T.dot(self.progress.statement.bent(by_rows)))
             moved = np.hypot(moved, by_rows)
         return np.hypot(moved[:, 0], moved[:, 1])
 

@@ -146,8 +146,7 @@ class SearchState:
 
         A component that is zero in truth is rounding of the points before it, and counts with its size.
         """
-        H, c, _ = self.statement.absolute
-        terms = H.dot(np.maximum(np.abs(self.x), EPS * self.traveled)) + c
+        terms = self.statement.curved(np.maximum(np.abs(self.x), EPS * self.traveled)) + self.statement.absolute[1]
         return terms + np.abs(of_rows).dot(np.abs(rows)) if of_rows.size else terms
 
     def fine_zero(self, terms: Array, rows: Array, inverse: Array, reach: Array) -> Array:
@@ -172,7 +171,7 @@ class SearchState:
         """
         size = self.traveled
         size = np.where(size <= LOST * max(self.far, 1.0), size / EPS, size)
-        return EPS * np.maximum(terms, self.statement.absolute[0].dot(np.maximum(size, reach)))
+        return EPS * np.maximum(terms, self.statement.curved(np.maximum(size, reach)))
 
     def level(self, direction: Array, zero: Array) -> float:
         """Size of a slope along a direction that counts as zero, from that of each component of the gradient (n,)."""

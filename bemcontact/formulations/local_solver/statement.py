@@ -57,16 +57,21 @@ class Statement:
         return np.abs(self.H), np.abs(self.c), np.abs(self.A)
 
     @cached_property
-    def _sparse(self) -> sparse.csr_array | None:
-        """H without its zeros, if products with it are faster than with H."""
+    def _factors(self) -> tuple[Any, Any]:
+        """H and |H|, without their zeros if products are faster then."""
         n = self.c.size
         if n < WORTH_SPARSE or np.count_nonzero(self.H) > SPARSE * n * n:
-            return None
-        return sparse.csr_array(self.H)
+            return self.H, self.absolute[0]
+        H = sparse.csr_array(self.H)
+        return H, abs(H)
 
     def bent(self, x: Array) -> Array:
         """H x."""
-        return self.H.dot(x) if self._sparse is None else self._sparse.dot(x)
+        return self._factors[0].dot(x)
+
+    def curved(self, size: Array) -> Array:
+        """Sum of the sizes of the terms of H x, from the sizes of x."""
+        return self._factors[1].dot(size)
 
     @property
     def row_sum(self) -> float:
@@ -153,7 +158,7 @@ class Statement:
     def rounding(self, d: Array) -> float:
         """Bound of the rounding in dᵀHd."""
         size = np.abs(d)
-        product = self.absolute[0].dot(size)
+        product = self.curved(size)
         return 100.0 * sqrt(d.size) * EPS * float(size.dot(product) + largest(size) * largest(product * (size > 0.0)))
 
     def violation(self, values: Array) -> Array:
