@@ -24,11 +24,11 @@ from .errors import SingularSystemError as SingularSystemError
 from .errors import SolverError as SolverError
 from .errors import SpecError as SpecError
 from .formulations.lcp import solve_lcp as solve_lcp
-from .formulations.local_solver import QPOptions as QPOptions
-from .formulations.local_solver import QPResult as QPResult
-from .formulations.local_solver import QPStatus as QPStatus
-from .formulations.local_solver import minimize_qp as minimize_qp
-from .formulations.search import Start as Start
+from .formulations.local_solver.minimize import minimize_qp as minimize_qp
+from .formulations.local_solver.result import QPOptions as QPOptions
+from .formulations.local_solver.result import QPResult as QPResult
+from .formulations.local_solver.result import QPStatus as QPStatus
+from .formulations.starts import Start as Start
 from .modelling.contact_model import ContactModel as ContactModel
 from .modelling.contact_model import model as model
 from .modelling.gap_design.design import design_gap as design_gap

@@ -146,6 +146,8 @@ def fine_remainders(right: Array, rows: Array, x: Array) -> Array:
     Sums of two numbers leave their rounding behind (Knuth), which is added at the end.
     """
     remainders = right - rows @ x
+    if 4 * np.count_nonzero(used := x != 0.0) <= 3 * x.size:
+        rows, x = rows[:, used], x[used]
     for part, products, lost in _exact_products(rows, x):
         sums, rounding = np.column_stack([right[part], -products]), -lost.sum(axis=1)
         while (half := sums.shape[1] // 2) > 0:

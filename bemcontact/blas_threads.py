@@ -12,8 +12,12 @@ from functools import lru_cache
 import scipy.linalg  # noqa: F401 - loads the BLAS of SciPy
 from threadpoolctl import ThreadpoolController
 
-WORTH_THREADS = 1000
-"""Size of a matrix from which several threads factorize it faster than one, also on processors that are half busy."""
+WORTH_THREADS = 2e9
+"""Products of two numbers from which several threads share the work on a matrix: those of a factorization of size 1800.
+
+Less work takes less than a tenth of a second on one thread. Two threads halve that on idle processors; on busy ones,
+where they wait for each other, they take several times as long.
+"""
 
 
 @lru_cache(maxsize=1)
@@ -42,9 +46,9 @@ class _OneThread(ContextDecorator):
                 self.before.restore_original_limits()
 
     @contextmanager
-    def lifted(self, size: int) -> Iterator[None]:
-        """As many threads as before, for work on a matrix that is large enough."""
-        many = size >= WORTH_THREADS
+    def lifted(self, products: float) -> Iterator[None]:
+        """As many threads as before, for so many products of two numbers if these are worth it."""
+        many = products >= WORTH_THREADS
         with self.lock:
             if many and self.users and self.before is not None:
                 self.before.restore_original_limits()

@@ -7,13 +7,14 @@ import numpy as np
 
 from bemcontact.adaptivity.coarse_mesh import CoarseMesh, unknown
 from bemcontact.adaptivity.error_bars import SAFETY, error_bars, resolved
-from bemcontact.adaptivity.fields import MeshDifference, Solved, solved
+from bemcontact.adaptivity.fields import MeshDifference, Solved, solved, solved_state
 from bemcontact.adaptivity.hidden_changes import told_apart
-from bemcontact.adaptivity.mesh_search import MeshSearch, cut, mesh_search
+from bemcontact.adaptivity.mesh_search import MeshSearch
+from bemcontact.adaptivity.mesh_sizes import MOST_UNKNOWNS, cut
 from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.bem.condense import Condensation, Condenser, condensed
-from bemcontact.errors import Issue, ProblemError, SingularSystemError, SolverError
+from bemcontact.errors import ProblemError, SingularSystemError, SolverError
 from bemcontact.problem.problem import ACCURACY, Problem
 
 NONE_ASKED = "no accuracy is asked for, and errors are not estimated"
@@ -27,10 +28,6 @@ MOST_FAILURES = 3
 """Number of first meshes that may have no contact state."""
 ROUNDED = 100 * float(np.finfo(float).eps)
 """Deformation over the largest coordinate or displacement, below which gaps are round-off."""
-MOST_UNKNOWNS = 4000
-"""Largest number of unknowns of the finer mesh."""
-UNKNOWNS = 4
-"""Unknowns of an element: two displacements at each of two nodes, for the third is that of the next element."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,15 +57,13 @@ def meshed(
     errors: bool = True,
     singular: Sequence[Sequence[Singularity]] = (),
     halved: bool = False,
-    condenser: Condenser = condensed,
 ) -> Meshed:
     """Condense a problem on the mesh that it states, or on one that is found for the accuracy asked.
 
     A found mesh is cut as `problem.mesh.refine` says. The errors of a stated mesh and of a cut one are estimated,
     unless no accuracy is asked for or `errors` is false: from its elements halved, or if those of a stated mesh are
     `halved` ones, as on a mesh that was found, from these. `singular` are infinite pressures under each load case that
-    the search for another mesh of the problem recognized. `condenser` condenses the problem on a mesh that is stated,
-    and on that mesh with its elements cut in two; a search for a mesh does not use it.
+    the search for another mesh of the problem recognized.
 
     Raises
     ------
@@ -77,36 +72,45 @@ def meshed(
     SingularSystemError
         If the equations of the body have no unique solution.
     """
-    progress = progress or (lambda _: None)
     if not problem.adapts:
-        return _stated(problem, progress, errors, singular, halved, condenser)
+        return stated(problem, progress, errors=errors, singular=singular, halved=halved)
+    progress = progress or (lambda _: None)
     found = _found(cut(problem, 1), progress)
     if problem.mesh.refine == 1:
         return found
-    finer = _stated(found.problem.refined(problem.mesh.refine), progress, errors, found.singular, False)
+    finer = stated(found.problem.refined(problem.mesh.refine), progress, errors=errors, singular=found.singular)
     known = tuple(mine.knowing(its) for mine, its in zip(finer.accuracies, found.accuracies, strict=True))
     return replace(finer, accuracies=known, singular=found.singular)
 
 
-def _stated(
-    problem: Problem, progress: Callable[[str], object], errors: bool, singular: Sequence[Sequence[Singularity]],
-    halved: bool, condenser: Condenser = condensed,
-) -> Meshed:  # fmt: skip
-    """Condense a problem on its mesh, and estimate the errors from a mesh with elements twice or half as long."""
-    asked, refine = problem.asked_accuracy, problem.mesh.refine
+def stated(
+    problem: Problem,
+    progress: Callable[[str], object] | None = None,
+    *,
+    errors: bool = True,
+    singular: Sequence[Sequence[Singularity]] = (),
+    halved: bool = False,
+    condenser: Condenser = condensed,
+) -> Meshed:
+    """Condense a problem on its mesh, and estimate the errors from a mesh with elements twice or half as long.
+
+    Parameters and errors are those of `meshed`; `condenser` condenses the problem on both meshes.
+    """
+    asked, refine, progress = problem.asked_accuracy, problem.mesh.refine, progress or (lambda _: None)
     if asked is None or not errors:
-        return _unsolved(problem, asked, NONE_ASKED if asked is None else NOT_ESTIMATED, condenser)
+        return _unsolved(problem, condenser(problem), asked, NONE_ASKED if asked is None else NOT_ESTIMATED)
     progress("mesh as stated")
+    condensation = condenser(problem)
     try:
-        own = solved(problem, condenser)
+        own = solved_state(condensation)
     except SolverError as error:
-        return _unsolved(problem, asked, str(error), condenser)
+        return _unsolved(problem, condensation, asked, str(error))
     try:
         unknowns = 2 * own.degrees_of_freedom
         if not halved and unknowns > MOST_UNKNOWNS:
             raise ProblemError(f"a mesh of half the elements' size has {unknowns} unknowns, more than {MOST_UNKNOWNS}")
         progress("every two elements in one" if halved else "every element in two")
-        other = solved(cut(problem, refine // 2 if halved else 2 * refine), condenser)
+        other = solved_state(condenser(cut(problem, refine // 2 if halved else 2 * refine)))
         coarse, fine = (other, own) if halved else (own, other)
         differences = _differences(coarse, fine, asked)
         singular = singular or tuple(map(recognized, differences))
@@ -145,28 +149,11 @@ def _differences(coarse: Solved, fine: Solved, asked: float) -> list[MeshDiffere
     return told_apart(pairs, asked / SAFETY)
 
 
-def first_mesh(problem: Problem) -> Problem:
-    """The problem on the first mesh, from the geometry alone and the elements that are stated."""
-    return _search(problem).mesh(1)
-
-
-def _search(problem: Problem) -> MeshSearch:
-    """Begin to search for a mesh; `ProblemError` if the stated elements alone are more than it can have."""
-    stated = sum(edge.elements or 0 for edge in problem.boundary.edges)
-    if (most := MOST_UNKNOWNS // UNKNOWNS) < stated:
-        message = (
-            f"{stated} elements are stated, and a mesh that is found has at most {most}; state fewer, or elements on "
-            "all edges and no accuracy, so that the mesh is taken as it is"
-        )
-        raise ProblemError(Issue(path=("boundary",), message=message))
-    return mesh_search(problem)
-
-
 def _found(problem: Problem, progress: Callable[[str], object], passes: int = MOST_PASSES) -> Meshed:
     """Find a mesh on which all error bars are below the accuracy asked, and solve on it."""
     asked = problem.asked_accuracy
     assert asked is not None
-    search = _search(problem)
+    search = MeshSearch.of(problem)
     best: Meshed | None = None
     errors: list[float] = []
     reason = f"no better mesh was found in {passes} passes"
@@ -214,7 +201,10 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
             break
         search.layers = search.with_counts(search.ends_of_contact(fine)[0])
         search.refine(differences, singular)
-    return _unsolved(search.mesh(1), asked, reason) if best is None else best.because(reason)
+    if best is None:
+        coarsest = search.mesh(1)
+        return _unsolved(coarsest, condensed(coarsest), asked, reason)
+    return best.because(reason)
 
 
 def _lost_digits(answer: Solved) -> str | None:
@@ -231,8 +221,8 @@ def _lost_digits(answer: Solved) -> str | None:
     return None
 
 
-def _unsolved(problem: Problem, asked: float | None, reason: str, condenser: Condenser = condensed) -> Meshed:
+def _unsolved(problem: Problem, condensation: Condensation, asked: float | None, reason: str) -> Meshed:
     """A problem on a mesh whose errors were not estimated, for a reason."""
     count = 1 if problem.case is not None else max(1, len(problem.case_names))
     accuracies = (Accuracy(asked=asked, reason=reason),) * count
-    return Meshed(problem=problem, condensation=condenser(problem), accuracies=accuracies)
+    return Meshed(problem=problem, condensation=condensation, accuracies=accuracies)

@@ -98,7 +98,7 @@ def _bars(difference: MeshDifference, singularities: Sequence[Singularity], of_f
         if m is None:
             solved, answer = estimate.reported
             force = solved.force(answer, number)
-            note = COMES_OR_GOES.format(name) if force > 0 else "no contact in this zone"
+            note = "" if force > 0 else "no contact in this zone"  # on the other mesh alone, it is `_unresolved`
             yield ErrorBar(quantity="force", zone=name, value=force, bar=None, note=note)
             continue
         hidden = hidden_change(difference, number)

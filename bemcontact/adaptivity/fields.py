@@ -11,9 +11,8 @@ from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import footprint
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
-from bemcontact.bem.condense import Condensation, Condenser, boundary_change, boundary_state, condensed
+from bemcontact.bem.condense import Condensation, boundary_change, boundary_state, condensed
 from bemcontact.bem.mesh import BoundaryState, Mesh
-from bemcontact.bem.outline import Outline
 from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import ContactSolution, Status
@@ -120,11 +119,6 @@ class Solved:
         """The mesh."""
         return self.body.mesh
 
-    @cached_property
-    def outline(self) -> Outline:
-        """The curves of the edges under the elements."""
-        return Outline(problem=self.body.problem)
-
     def run(self, number: int) -> ZoneRun:
         """The run of a number; one without elements is not among `runs`."""
         return next(run for run in self.runs if run.number == number)
@@ -154,10 +148,14 @@ class Solved:
         return np.hypot(tangents[..., 0], tangents[..., 1]) * weights
 
 
-def solved(problem: Problem, condenser: Condenser = condensed) -> Solved:
-    """Solve a problem on its mesh, under the case that acts or each one; `SolverError` without a contact state."""
-    condensation = condenser(problem)
-    runs = tuple(zone_runs(condensation.body))
+def solved(problem: Problem) -> Solved:
+    """Condense and solve a problem on its mesh; `SolverError` without a contact state."""
+    return solved_state(condensed(problem))
+
+
+def solved_state(condensation: Condensation) -> Solved:
+    """Solve a condensed problem, under the case that acts or each one; `SolverError` without a contact state."""
+    problem, runs = condensation.body.problem, tuple(zone_runs(condensation.body))
     names = (None,) if problem.case is not None or not problem.load_cases else problem.case_names
     answers = tuple(_answer(condensation.acting(name), runs) for name in names)
     return Solved(condensation=condensation, runs=runs, answers=answers)
@@ -310,7 +308,7 @@ def _by_pairs(values: Array) -> Array:
 def penetrations(answer: Solved, case: CaseAnswer) -> Iterator[tuple[int, float]]:
     """Open elements through which a surface passes between the nodes, with the depth [L]."""
     condensation = case.condensation
-    gaps = surface_gaps(condensation.body.problem, case.state, condensation.contact, case.solution, answer.outline)
+    gaps = surface_gaps(condensation.body, case.state, condensation.contact, case.solution)
     size = float(np.hypot(*np.moveaxis(case.displacement, 2, 0)).max())
     for number, zone in enumerate(answer.body.problem.contact_zones):
         elements = np.flatnonzero(answer.in_zone[number] & ~(case.pressure[number] > 0).any(axis=1))

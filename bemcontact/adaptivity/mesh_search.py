@@ -2,21 +2,18 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 
 import numpy as np
 
 from bemcontact.adaptivity.error_bars import SAFETY, near_singularities
 from bemcontact.adaptivity.fields import MeshDifference, Solved, most_of, norm_squared, penetrations, solved
-from bemcontact.adaptivity.first_sizes import SizedOutline, outline, surface_sizes
+from bemcontact.adaptivity.first_sizes import SizedOutline
 from bemcontact.adaptivity.hidden_changes import hiding
+from bemcontact.adaptivity.mesh_sizes import ContactEnd, MeshSizes, useful_limits
 from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
-from bemcontact.adaptivity.sizes import GROWTH, OUTSIDE, Layers, Limit, Loop
+from bemcontact.adaptivity.sizes import OUTSIDE, Limit
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import Array, IntArray
-from bemcontact.errors import Issue, ProblemError
-from bemcontact.problem.geometry import MOST_ELEMENTS
-from bemcontact.problem.problem import Problem
 
 LAYERS = 5.0
 """Layers of elements in contact beside an end of contact, at first."""
@@ -45,44 +42,11 @@ SPOT = 1 / 4
 """Factor of an element under which something penetrates between nodes."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class ContactEnd:
-    """An end of contact on a loop."""
-
-    loop: int
-    position: float
-    after: bool
-    width: float
-
-
 @dataclass(kw_only=True)
-class MeshSearch:
+class MeshSearch(MeshSizes):
     """State of the search for a mesh."""
 
-    problem: Problem
-    outline: SizedOutline
-    sources: list[list[Limit]]
-    marks: list[list[float]]
-    layers: list[tuple[ContactEnd, float]] = field(default_factory=list)
-    spots: list[tuple[int, Limit]] = field(default_factory=list)
     watch: Watch = field(default_factory=Watch)
-    growth: float = GROWTH
-
-    def mesh(self, refine: int) -> Problem:
-        """The problem with elements as the sources ask, cut into equal parts."""
-        ends: dict[str, tuple[float, ...]] = {}
-        for number, loop in enumerate(self.outline.loops):
-            own = [(end, count) for end, count in self.layers if end.loop == number]
-            layers = [Layers(position=e.position, width=e.width, count=n, after=e.after) for e, n in own]
-            narrow = [limit for at, limit in self.spots if at == number]
-            marks = [*self.marks[number], *(end.position for end, _ in own)]
-            sized = replace(loop, growth=self.growth)
-            ends |= sized.element_ends(np.array([*self.sources[number], *narrow]), layers, marks)
-        if (total := sum(len(own) + 1 for own in ends.values())) > MOST_ELEMENTS:
-            needed = f"a mesh of this body needs {total} elements, more than {MOST_ELEMENTS}"
-            message = f"{needed}: it is too slender, or has too small parts; check its coordinates, or state elements"
-            raise ProblemError(Issue(path=("boundary",), message=message))
-        return cut(self.problem.with_element_ends(ends), refine)
 
     def solve(self, refine: int) -> Solved:
         """Solve on that mesh, under each load case."""
@@ -208,7 +172,7 @@ class MeshSearch:
             wanted[tips], factor[tips] = True, TIP
         for element in np.flatnonzero(wanted):
             self._limit(coarse, int(element), float(factor[element]))
-        self.sources = [_useful(*pair) for pair in zip(self.outline.loops, self.sources, strict=True)]
+        self.sources = [useful_limits(*pair) for pair in zip(self.outline.loops, self.sources, strict=True)]
         self.layers = [(end, max(n, min(MOST_LAYERS * n, self._layers_asked()))) for end, n in self.layers]
         self.growth *= SLOWER
         return bool(wanted.any())
@@ -273,17 +237,6 @@ def _tips(difference: MeshDifference, singular: Sequence[Singularity]) -> IntArr
     return np.concatenate(tips)
 
 
-def _useful(loop: Loop, limits: Sequence[Limit]) -> list[Limit]:
-    """The limits without those that others make idle."""
-    return [Limit(*row) for row in loop.without_idle(np.array(limits)).tolist()]
-
-
-def cut(problem: Problem, refine: int) -> Problem:
-    """The problem with each element of its mesh cut into equal parts."""
-    mesh = problem.mesh.model_copy(update={"refine": refine})
-    return problem.model_copy(update={"mesh": mesh})
-
-
 def _around(away: Array, length: float) -> Array:
     away = np.mod(np.abs(away), length)
     return np.minimum(away, length - away)
@@ -307,23 +260,3 @@ def _middles(answer: Solved, outline: SizedOutline) -> tuple[Array, Array]:
             positions.append(loop.start_of[edge.name] + edge.length * (ends[:-1] + ends[1:]) / 2)
             loops.append(np.full(len(ends) - 1, number))
     return np.concatenate(positions), np.concatenate(loops)
-
-
-def mesh_search(problem: Problem) -> MeshSearch:
-    """Begin with sizes from the geometry, the surfaces, and the elements that are stated."""
-    shape = outline(problem)
-    near, corners = surface_sizes(problem, shape)
-    limits: list[list[Limit]] = []
-    marks: list[list[float]] = []
-    for number, loop in enumerate(shape.loops):
-        own, ends = [*shape.sizes(number), *near.get(number, [])], [*corners.get(number, [])]
-        for edge in loop.edges:
-            start, length = loop.start_of[edge.name], edge.length
-            ends += [start + place * length for place in edge.ends_at]
-            if edge.elements is not None:
-                at = start + length * edge.breakpoints(problem.mesh.refine)
-                own += [Limit(low=low, high=high, size=high - low) for low, high in pairwise(at.tolist())]
-        limits.append(_useful(loop, own))
-        marks.append(ends)
-    kept = problem.model_copy(update={"accuracy": problem.asked_accuracy})  # a mesh that is found asks for it as before
-    return MeshSearch(problem=kept, outline=shape, sources=limits, marks=marks)

@@ -9,7 +9,6 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.bem.body import Body
-from bemcontact.bem.contact_points import element_lengths
 from bemcontact.bem.mesh import CORNER
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
@@ -99,7 +98,7 @@ class ZoneRun:
 def zone_runs(body: Body) -> Iterator[ZoneRun]:
     """List the unbroken pieces of all contact zones of a body on its mesh, by their numbers."""
     mesh, points, problem = body.mesh, body.points, body.problem
-    lengths, zones = element_lengths(mesh), [*problem.contact_zones]
+    lengths, zones = mesh.lengths, [*problem.contact_zones]
     for number, elements in enumerate(points.elements_of_run):
         if not len(elements):
             continue  # a corner of the body that stands on a face by itself

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bemcontact.adaptivity.adapt import first_mesh
-from bemcontact.analysis.diagnostics import bulging
+from bemcontact.adaptivity.mesh_sizes import first_mesh
+from bemcontact.analysis.spline_bulges import bulging
 from bemcontact.arrays import Array
 from bemcontact.bem.body import Body, body_of, deflections, each_case, ensure_held
 from bemcontact.bem.mesh import Mesh, build

@@ -4,14 +4,14 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import null_space, orth
 
 from bemcontact.adaptivity.zone_runs import SAME
+from bemcontact.analysis.spline_bulges import bulging
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.bem.body import Body
-from bemcontact.bem.contact_points import element_lengths
 from bemcontact.bem.mesh import CORNER
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problem.surface_lines import Polyline, Spline
 
@@ -64,27 +64,6 @@ def diagnostics(
         yield from bulging(body, BULGE * displacement, FAR * displacement)
 
 
-def bulging(body: Body, least: float, reach: float = np.inf) -> Iterator[str]:
-    """Note a spline that bulges between its points by more than `least` [L], no farther from contact points than that.
-
-    `reach` [L] is the distance from contact points beyond which a bulge does not matter.
-    """
-    for number, (name, zone) in enumerate(body.problem.contact_zones.items()):
-        if not isinstance(zone.surface, Spline):
-            continue
-        nodes = body.mesh.nodes[body.points.node[body.points.zone == number]]
-        excess, places = zone.surface.bulges
-        near = np.array([np.hypot(*(nodes - place).T).min() for place in places]) <= reach + excess
-        i = int(np.argmax(np.where(near, excess, 0.0)))
-        if near[i] and excess[i] > least:
-            x, y = places[i].tolist()
-            how_far = f"{excess[i]:.2g} {body.problem.units.length}".rstrip()
-            yield (
-                f"the spline of '{name}' bulges by {how_far} at ({x:.5g}, {y:.5g}), between two of its points, beside "
-                "the line through them; put several points on a flat part, close to where it ends, or use a polyline"
-            )
-
-
 def coarse_answer(asked: float | None) -> Iterator[str]:
     """Note that an accuracy was asked for with which an answer is only a first look."""
     if asked is not None and asked > COARSE:
@@ -126,7 +105,7 @@ def hardly_held(
     One without any slope has another note if motions are `undetermined`.
     """
     motions = body.seen.coefficients  # (k, 3 + 3 t): x, y and turn of the body, then of tools
-    moved = orth(motions.T @ null_space(motions[:, 2:].T))  # pure translations of the body, orthonormal
+    moved = np.linalg.qr(motions.T @ unseen_ways(motions[:, 2:].T, LEVEL))[0]  # pure translations of the body
     if not touching.any() or not moved.size:
         return
     changes = contact.rigid_motions[touching] @ np.linalg.lstsq(motions.T, moved)[0]
@@ -232,7 +211,7 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
 def long_neighbors(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     """Note where contact reaches the end of a zone and the elements beyond it are much longer."""
     mesh, points = body.mesh, body.points
-    lengths, in_zone = element_lengths(mesh), np.isin(np.arange(len(mesh.elements)), points.element)
+    lengths, in_zone = mesh.lengths, np.isin(np.arange(len(mesh.elements)), points.element)
     for i in np.flatnonzero(touching & (points.node < len(mesh.elements))):
         after, before = points.node[i], mesh.before[points.node[i]]
         outside, inside = (before, after) if in_zone[after] else (after, before)

@@ -5,7 +5,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from bemcontact.adaptivity.mesh_search import cut
+from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.arrays import Array
 from bemcontact.bem.body import Body, body_of
 from bemcontact.bem.condense import boundary_state, condense

@@ -78,11 +78,12 @@ def load_after(
     """
     motions = body.free
     load = _load_of_turns(gaps, motions, contact, solution, moved)
-    force, moment = _gain_of_levers(gaps, body)
+    center = _centroid(body)
+    force, moment = _gain_of_levers(gaps, body, center)
     pressed = contact.weights_by_zone @ (solution.pressure > 0)
     if abs(moment) <= least * pressed[pressed > 0].min() * (contact.weights @ solution.pressure):
         return load
-    return load + motions.body.work_of(force, moment, about=_centroid(body))
+    return load + motions.body.work_of(force, moment, about=center)
 
 
 def turn_of_body(gaps: SurfaceGaps) -> float:
@@ -92,14 +93,14 @@ def turn_of_body(gaps: SurfaceGaps) -> float:
     return float(np.sum(length * (x[..., 0] * u[..., 1] - x[..., 1] * u[..., 0])) / np.sum(length[..., None] * x**2))
 
 
-def _gain_of_levers(gaps: SurfaceGaps, body: Body) -> tuple[Array, float]:
-    """Force (2,) and moment about the centroid that the forces gain as the body turns by θ.
+def _gain_of_levers(gaps: SurfaceGaps, body: Body, center: Array) -> tuple[Array, float]:
+    """Force (2,) and moment about the centroid (2,) that the forces gain as the body turns by θ.
 
     Their places turn with the body, which adds -θ Σ r·f to the moment. A prescribed pressure turns with its face: it
     keeps its moment, and its resultant has another direction. A weight acts on the centroid.
     """
     mesh, angle = body.mesh, turn_of_body(gaps)
-    length, r = mesh.tributary[..., None], gaps.state.points - _centroid(body)
+    length, r = mesh.tributary[..., None], gaps.state.points - center
     following = [edge for edge, held in _conditions(gaps) if held.pressure is not None]
     with_face = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in following])[:, None, None]
     prescribed = body.acting.values.traction

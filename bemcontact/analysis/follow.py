@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
-from bemcontact.adaptivity.mesh_search import cut
+from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.analysis.path_states import FollowedPath, errors_at_breakpoints
 from bemcontact.analysis.penetration import penetration_on_path
 from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind

@@ -18,7 +18,7 @@ from bemcontact.assessment.accuracy import together
 from bemcontact.blas_threads import one_thread
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.multistart import solve_contact
-from bemcontact.formulations.search import with_start_read
+from bemcontact.formulations.starts import with_start_read
 from bemcontact.options import FormulationName, SolveKeywords, SolveOptions, Weights
 from bemcontact.problem.problem import Problem
 from bemcontact.serialization import Record, Recorded

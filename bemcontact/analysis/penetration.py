@@ -17,7 +17,6 @@ from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.penetration import ROUND_OFF, Misfit, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import runs
-from bemcontact.bem.outline import Outline
 from bemcontact.bem.surface_gaps import FaceEnd, SurfaceGaps, surface_gaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
@@ -69,7 +68,7 @@ def penetration(
     largest = float(np.hypot(*np.moveaxis(state.displacement, 2, 0)).max())
     allowed = tolerated(contact, largest, gaps.problem.boundary.size)
     for zone in gaps.surfaces:
-        found, paired = gaps.intrusion(zone), gaps.paired(zone)
+        found, paired = gaps.intrusion(zone), gaps.paired[zone]
         depth = float(found.depth.max())
         if depth > max(allowed, worst.depth if worst else 0.0):
             deepest = np.flatnonzero(found.depth >= (1 - ROUND_OFF) * depth)
@@ -131,8 +130,9 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
 def _without_details(line: Array, length: float) -> Array:
     """The line (k, 2) with no two points inside one part of this length."""
     along = np.append(0.0, np.hypot(*np.diff(line, axis=0).T).cumsum())
-    _, kept = np.unique(np.floor(along / length), return_index=True)
-    return line[np.union1d(kept, [len(line) - 1])]
+    kept = np.diff(np.floor(along / length), prepend=-1.0) > 0
+    kept[-1] = True
+    return line[kept]
 
 
 def _crossing(loops: Sequence[Array], gaps: SurfaceGaps) -> Array | None:
@@ -160,13 +160,13 @@ def penetration_on_path(
     there.
     """
     varied, path = followed.varied, followed.path
-    outline, worst, at, notes = Outline(problem=varied.problem), None, None, dict[str, list[float]]()
+    worst, at, notes = None, None, dict[str, list[float]]()
     last, near, strained = len(path.parameter) - 1, part_of_path(varied.problem), dict[str, tuple[Noticed, float]]()
     for i, t in enumerate(path.parameter.tolist()):
         value, solution = followed.value(t), path.breakpoint(i)
         condensation, state = followed.state(t, solution)
         body, contact = condensation.body, condensation.contact
-        gaps = surface_gaps(body.problem, state, contact, solution, outline)
+        gaps = surface_gaps(body, state, contact, solution)
         nearby = _peaks_within(path, t - near, t + near) if 0 < i < last else None
         found, said = penetration(gaps, body, contact, solution, nearby, infinite)
         beyond, noticed = linear_theory(
@@ -209,7 +209,7 @@ def _where(key: str, values: Sequence[float]) -> str:
 def _penetration(gaps: SurfaceGaps, zone: str, element: int, xi: float, depth: float, allowed: float) -> Penetration:
     """Describe a penetration."""
     x, y = gaps.outline.places(np.array([element]), np.array([[xi]])).points[0, 0].tolist()
-    edge, paired = gaps.state.edge_names[gaps.state.edge[element]], bool(gaps.paired(zone)[element])
+    edge, paired = gaps.state.edge_names[gaps.state.edge[element]], bool(gaps.paired[zone][element])
     how_deep = f"{depth:.3g} {gaps.problem.units.length}".strip()
     return Penetration(
         depth=depth,

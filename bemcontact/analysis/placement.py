@@ -11,7 +11,6 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import block_diag, null_space
 
 from bemcontact.analysis.displaced_contact import Displaced, displaced, load_after, turn_of_body
 from bemcontact.arrays import Array, BoolArray, IntArray
@@ -21,6 +20,7 @@ from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.surface_gaps import SurfaceGaps
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.formulations import complementarity
 from bemcontact.problem.problem import Problem
@@ -78,8 +78,8 @@ def placement(
     overhangs = tuple(_overhangs(gaps, points, contact, beside, pressed, moved))
     moved.change[beside] = 0.0
     load = load_after(gaps, body, contact, solution, moved, noted(gaps.problem))
-    unheld = np.asarray(block_diag(_unheld(contact, solution), np.eye(len(body.unseen))))
-    push = unheld @ (unheld.T @ load)
+    ways, push = _unheld(contact, solution), load.copy()  # nothing holds the unseen motions
+    push[: len(ways)] = ways @ (ways.T @ load[: len(ways)])
     largest = (contact.weights @ solution.pressure) * abs(contact.rigid_motions).max(axis=0, initial=0.0)
     load = (load - push)[: contact.free_motions]
     load = np.where(abs(load) > NO_CHANGE * largest, load, 0.0)
@@ -106,7 +106,7 @@ def placement(
 
 def _unheld(contact: CondensedContact, solution: ContactSolution) -> Array:
     """Free motions (k, j) that move no point under pressure: an orthonormal basis."""
-    return null_space(contact.rigid_motions[solution.pressure > 0], rcond=UNSEEN)
+    return unseen_ways(contact.rigid_motions[solution.pressure > 0], UNSEEN)
 
 
 def _slides(

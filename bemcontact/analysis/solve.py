@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Literal, Unpack
+from typing import Literal, Self, Unpack
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.singularities import Singularity
@@ -15,7 +15,7 @@ from bemcontact.assessment.accuracy import NO_MESH, Accuracy
 from bemcontact.assessment.certificate import CertificateKind, certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
-from bemcontact.bem.condense import Condensation, Condenser, boundary_state, condensed
+from bemcontact.bem.condense import Condensation, boundary_state
 from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import ensure_callable, shown
@@ -24,7 +24,7 @@ from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.formulations.multistart import multistart, solve_contact
-from bemcontact.formulations.search import with_start_read
+from bemcontact.formulations.starts import with_start_read
 from bemcontact.options import (
     STARTS,
     FormulationName,
@@ -171,15 +171,21 @@ def solve_with(
     problem: Problem | CondensedContact,
     progress: Callable[[int], object] | None = None,
     on_mesh: Progress | None = None,
-    condenser: Condenser = condensed,
 ) -> Result:
     """Solve a contact problem with options, and assess the result, as `solve` does.
 
-    `on_mesh` is called with each stage and how far it has come. `condenser` condenses the problem on a stated mesh.
+    `on_mesh` is called with each stage and how far it has come.
     """
     options, watch = with_start_read(options), Stopwatch(progress=on_mesh)
     ensure_acting(problem)
-    prepared = prepare(problem, watch, condenser=condenser)
+    return solve_prepared(options, prepare(problem, watch), watch, progress)
+
+
+@one_thread
+def solve_prepared(
+    options: SolveOptions, prepared: "Prepared", watch: Stopwatch, progress: Callable[[int], object] | None = None
+) -> Result:
+    """Solve a problem that is condensed, with options of which the start is read, and assess the result."""
     with watch.stage("solution"):
         solution, searches = solve_contact(prepared.contact, options, progress)
     return assessed(prepared, solution, options.weights, watch, searches)
@@ -197,6 +203,16 @@ class Prepared:
     singular: tuple[tuple[Singularity, ...], ...] = ()
     """Infinite pressures that the search for the mesh recognized."""
 
+    @classmethod
+    def on_mesh(cls, found: Meshed) -> Self:
+        """A problem on its mesh, under the only load case or that which acts."""
+        return cls(
+            contact=found.condensation.contact,
+            condensation=found.condensation,
+            accuracy=found.accuracies[0],
+            singular=found.singular,
+        )
+
 
 def prepare(
     problem: Problem | CondensedContact,
@@ -204,32 +220,20 @@ def prepare(
     *,
     errors: bool = True,
     singular: Sequence[Sequence[Singularity]] = (),
-    condenser: Condenser = condensed,
 ) -> Prepared:
     """Condense a problem on its mesh or on one that is found, and estimate the errors of a stated mesh if wanted."""
     ensure_kind(problem)
     if isinstance(problem, CondensedContact):
         return Prepared(contact=problem)
-    on_mesh = mesh_of(problem, watch, errors=errors, singular=singular, condenser=condenser)
-    return Prepared(
-        contact=on_mesh.condensation.contact,
-        condensation=on_mesh.condensation,
-        accuracy=on_mesh.accuracies[0],
-        singular=on_mesh.singular,
-    )
+    return Prepared.on_mesh(mesh_of(problem, watch, errors=errors, singular=singular))
 
 
 def mesh_of(
-    problem: Problem,
-    watch: Stopwatch,
-    *,
-    errors: bool = True,
-    singular: Sequence[Sequence[Singularity]] = (),
-    condenser: Condenser = condensed,
+    problem: Problem, watch: Stopwatch, *, errors: bool = True, singular: Sequence[Sequence[Singularity]] = ()
 ) -> Meshed:
     """Condense a problem on its mesh or on one that is found, with the accuracy under each load case."""
     with watch.stage("mesh") as say:
-        return meshed(problem.without_joints(), say, errors=errors, singular=singular, condenser=condenser)
+        return meshed(problem.without_joints(), say, errors=errors, singular=singular)
 
 
 def assessed(
@@ -251,7 +255,7 @@ def assessed(
         where, deepest, said = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite)), None, ()
         if certificate.kind is not CertificateKind.NOT_A_SOLUTION:
             if boundary is not None and condensation is not None:
-                gaps = surface_gaps(condensation.body.problem, boundary, contact, solution)
+                gaps = surface_gaps(condensation.body, boundary, contact, solution)
                 deepest, said = misfit(gaps, condensation.body, contact, solution, where, prepared.accuracy.infinite)
             said += tuple(diagnostics(contact, solution, where, None if condensation is None else condensation.body))
         notes = (*contact.notes, *solution.notes, *said)

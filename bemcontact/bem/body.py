@@ -9,8 +9,9 @@ import scipy
 
 from bemcontact.arrays import Array, nonnegative_fit
 from bemcontact.bem.contact_points import ContactPoints, contact_points
-from bemcontact.bem.loading import Loading, case_loadings, combined, particular_solution, permanent_loading
-from bemcontact.bem.mesh import BoundaryValues, Mesh, boundary_values, build
+from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
+from bemcontact.bem.mesh import Mesh, build
+from bemcontact.bem.outline import Outline
 from bemcontact.bem.rigid_motions import (
     BODY,
     UNSEEN,
@@ -22,10 +23,9 @@ from bemcontact.bem.rigid_motions import (
     placed_tools,
     toward,
 )
-from bemcontact.bem.system import System, solve_system
 from bemcontact.checks.memory import ensure_memory
 from bemcontact.contact.load_cases import BALANCED, Pinned
-from bemcontact.errors import Issue, KeyPath, ProblemError
+from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import Circle, DeflectedContour
 from bemcontact.problem.visibility import zone_edges
@@ -60,6 +60,7 @@ class Body:
     Parameters
     ----------
     problem, mesh, points : the problem, its mesh and its contact points
+    outline : the curves under the elements, as drawn
     loadings : 1 + c, the permanent loading, then the addition of each load case
     tools : rigid surfaces that move
     motions : all rigid motions of the body that the conditions leave free
@@ -69,6 +70,7 @@ class Body:
 
     problem: Problem
     mesh: Mesh
+    outline: Outline
     points: ContactPoints
     loadings: tuple[Loading, ...]
     tools: PlacedTools
@@ -126,9 +128,19 @@ class Body:
         return motions.body.along_normals(self.points) + self.tools.motions @ motions.tools
 
     @cached_property
+    def seen_motion(self) -> Array:
+        """R (n, k): change of the gaps in the seen motions."""
+        return self.normal_motion(self.seen)
+
+    @cached_property
+    def seen_load(self) -> Array:
+        """Work (k, 1 + c) of each loading in the seen motions, as of `motion_load`."""
+        return self.motion_load(self.seen)
+
+    @cached_property
     def relative_load(self) -> tuple[Array, Array]:
         """R (n, k) without round-off, and the load (k,) that acts in the seen motions, relative to the largest."""
-        R, load = self.normal_motion(self.seen), self.motion_load(self.seen) @ self.factors
+        R, load = self.seen_motion, self.seen_load @ self.factors
         largest = abs(load).max(initial=0.0)
         none = largest <= BALANCED * self.pinned.total(self.factors, self.forces)
         return np.where(abs(R) > UNSEEN, R, 0.0), np.zeros_like(load) if none else load / largest
@@ -213,16 +225,17 @@ def body_of(problem: Problem) -> Body:
     body. A problem with load cases of which none acts is meshed without this check.
     """
     mesh = build(problem)
+    outline = Outline(problem=problem, mesh=mesh)
     ensure_memory(MATRICES * 8 * mesh.degrees_of_freedom**2)
     _ensure_before_surfaces(problem, mesh)
     permanent, cases = permanent_loading(problem, mesh), case_loadings(problem, mesh)
     added = [loading.values for loading in cases]
-    points = contact_points(problem, mesh, permanent.values, deflections(problem, mesh), added)
+    points = contact_points(outline, permanent.values, deflections(problem, mesh), added)
     tools = placed_tools(problem, points)
     motions = free_rigid_motions(mesh, permanent.values.displacement_given)
     seen, unseen = free_motions(points, motions, tools)
     body = Body(
-        problem=problem, mesh=mesh, points=points, loadings=(permanent, *cases), tools=tools,
+        problem=problem, mesh=mesh, outline=outline, points=points, loadings=(permanent, *cases), tools=tools,
         motions=motions, seen=seen, unseen=unseen,
     )  # fmt: skip
     if problem.case is not None or not problem.load_cases:
@@ -321,39 +334,12 @@ def deflections(problem: Problem, mesh: Mesh) -> dict[str, Array]:
     `ProblemError` if the conditions of a contour contradict each other, or leave the body free to move.
     """
     surfaces = {name: zone.surface for name, zone in problem.contact_zones.items()}
+    contours = {name: surface for name, surface in surfaces.items() if isinstance(surface, DeflectedContour)}
+    if not contours:
+        return {}
+    from bemcontact.bem.deflected_contours import deflection
+
     return {
-        name: _deflection(problem, mesh, surface, ("contact_zones", name, "surface"))
-        for name, surface in surfaces.items()
-        if isinstance(surface, DeflectedContour)
+        name: deflection(problem, mesh, surface, ("contact_zones", name, "surface"))
+        for name, surface in contours.items()
     }
-
-
-def _deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: KeyPath) -> Array:
-    """Displacement (N, 2) [L] of the body under the loads that shape a contour, whose path of keys is given."""
-    values = _boundary_values(problem, mesh, surface, path)
-    motions = free_rigid_motions(mesh, values.displacement_given)
-    if len(motions):
-        message = (
-            f"with these conditions nothing holds the body against the {' and the '.join(motions.describe())}, for "
-            "the contour is computed without contact; prescribe displacements that hold it"
-        )
-        raise ProblemError(Issue(path=(*path, "conditions"), message=message))
-    loading = Loading(values=values, particular=particular_solution(surface.loads, problem.material, mesh))
-    system = System(
-        mesh=mesh, material=problem.material, points=ContactPoints.none(mesh), motions=motions, loadings=(loading,),
-    )  # fmt: skip
-    displacement, _ = system.fields(solve_system(system).combined(np.ones(1)), loading)
-    return displacement
-
-
-def _boundary_values(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: KeyPath) -> BoundaryValues:
-    """Spread the conditions of a contour over the mesh; issues of its own conditions get its key path."""
-    other = problem.model_copy(update={"conditions": problem.conditions | surface.conditions})
-    try:
-        return boundary_values(other, mesh)
-    except ProblemError as error:
-        issues = [
-            replace(item, path=(*path, *item.path)) if item.path[1] in surface.conditions else item
-            for item in error.issues
-        ]
-        raise ProblemError(issues) from None

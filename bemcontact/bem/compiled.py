@@ -156,7 +156,7 @@ def _split_off(
     w: Array, i: int, c1: complex, c2: complex, r: complex, minus: complex, plus: complex, on: bool,
     log_ratio: complex, turn0: complex, turn2: complex, rules: FlatRules,
 ) -> None:  # fmt: skip
-    """The integrals of one pair as in `kernels._with_root_split_off`, written to w; `on`: the root is conj(r) too."""
+    """The integrals of one pair as in `kernels.with_root_split_off`, written to w; `on`: the root is conj(r) too."""
     d = c1 + c2 * r
     tier = 0
     if abs(c2) > STRAIGHT * abs(c1):
@@ -208,7 +208,7 @@ def _split_off(
 def _near_singular(
     w: Array, i: int, points: FlatPoints, j: int, elements: FlatElements, e: int, rules: FlatRules
 ) -> None:
-    """As `kernels.near_singular`."""
+    """As `kernels.beside_element`, integrated."""
     c1, c2 = elements.c1[e], elements.c2[e]
     t0, t1, t2 = _at_nodes(points, j, elements, e)
     start, step = _nearest_root(t0, t1, t2, c1, c2)
@@ -219,7 +219,7 @@ def _near_singular(
 
 @_machine_code
 def _singular(w: Array, i: int, x: float, c1: complex, c2: complex, rules: FlatRules) -> None:
-    """As `kernels.singular`, for a point at the local coordinate x of the element."""
+    """As `kernels.on_element`, integrated, for a point at the local coordinate x of the element."""
     if abs(x) == 1:
         ratio = complex(-x * math.log(2 * abs(c1 + 2 * x * c2)), 0.0)
     else:

@@ -14,7 +14,8 @@ from bemcontact.bem.body import Body, body_of, ensure_held
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.response import Response
 from bemcontact.bem.rigid_motions import all_rigid_motions
-from bemcontact.bem.system import System, solve_system
+from bemcontact.bem.solution import solve_system
+from bemcontact.bem.system import System
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import Gauge, MotionAlgebra, fix_gauge
 from bemcontact.contact.load_cases import LoadCases, Tools
@@ -122,7 +123,7 @@ def _condensation(body: Body, system: System, response: Response) -> Condensatio
     points, tools, s = body.points, body.tools, len(body.loadings)
     observed = _observe(system, response)
     prescribed = [np.sum(points.normals * item.values.displacement[points.node], axis=1) for item in body.loadings]
-    R, load = body.normal_motion(body.seen), body.motion_load(body.seen)
+    R, load = body.seen_motion, body.seen_load
     own = np.any(body.seen.body.coefficients, axis=1)
     gauge = fix_gauge(
         MotionAlgebra(rigid_motions=R[:, own], weights=points.tributary, motion_load=load[own]),
@@ -179,11 +180,11 @@ def _condensation(body: Body, system: System, response: Response) -> Condensatio
 def _observe(system: System, response: Response) -> Array:
     """Normal displacement (n, s + n) over L0 at the contact points due to the unknowns."""
     points = system.points
-    result = np.zeros((len(points), response.columns))
+    result = np.zeros((response.columns, len(points)))
     for normal, column in zip(points.normals.T, system.unknowns.displacement[points.node].T, strict=True):
-        free = column >= 0
-        result[free] += normal[free, None] * response.rows(column[free])
-    return result
+        free = np.flatnonzero(column >= 0)
+        result[:, free] += normal[free] * response.rows(column[free]).T
+    return result.T
 
 
 def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> BoundaryState:

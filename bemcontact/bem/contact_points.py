@@ -12,7 +12,6 @@ from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import BoundaryValues, Mesh
 from bemcontact.bem.outline import Outline
 from bemcontact.errors import Issue, ProblemError
-from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour, RigidSurface
 from bemcontact.problem.surface_lines import Faces
 from bemcontact.problem.visibility import turned_to
@@ -23,10 +22,8 @@ ALIKE = 1e-9
 """Difference of two normals, or of two gaps over the size of the body, at one node that counts as none."""
 SMOOTH = 0.05
 """Sine of the angle between elements below which the boundary is smooth: quadratic elements on a curve kink a bit."""
-ROUGH = 1e-7
-"""Difference of the unit normals of two edges below which they meet smoothly."""
-ARC_ORDER = 12
-"""Gauss points for arc lengths and the consistent weights."""
+CONSISTENT_ORDER = 12
+"""Gauss points for the consistent weights."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,42 +112,26 @@ class ContactPoints:
     @cached_property
     def element_length(self) -> Array:
         """(n,) [L]: length of the element, the mean of the two where a node has two; [SS92] (26) taken literally."""
-        lengths = element_lengths(self.mesh)[self.element]
+        lengths = self.mesh.lengths[self.element]
         return np.bincount(self.point, lengths, len(self)) / np.bincount(self.point, minlength=len(self))
 
     @cached_property
     def consistent(self) -> Array:
         """(n, n) [L]: Σ over elements of ∫ h hᵀ |dx/dξ| dξ, [SS92] (24)-(25)."""
-        xi, weights = reference_element.gauss_legendre(ARC_ORDER)
+        xi, weights = reference_element.gauss_legendre(CONSISTENT_ORDER)
         N, tangents = reference_element.values(xi), self.mesh.tangents_at(xi)
         jacobian = np.hypot(tangents[..., 0], tangents[..., 1])
         local = np.einsum("gk,gl,mg,g->mkl", N, N, jacobian, weights)
-        J = np.zeros((len(self), len(self)))
-        for element, zone in np.unique(np.column_stack([self.element, self.zone_of_share]), axis=0):
-            at = (self.element == element) & (self.zone_of_share == zone)
-            k, i = self.local[at], self.point[at]
-            np.add.at(J, np.ix_(i, i), local[element][np.ix_(k, k)])
-        return J
-
-
-def element_lengths(mesh: Mesh) -> Array:
-    """Arc length (m,) [L] of each element."""
-    return half_lengths(mesh).sum(axis=1)
-
-
-def half_lengths(mesh: Mesh) -> Array:
-    """Arc length (m, 2) [L] of the first and the second half of each element."""
-    xi, weights = reference_element.gauss_legendre(ARC_ORDER)
-    halves = []
-    for shift in (-0.5, 0.5):
-        tangents = mesh.tangents_at(xi / 2 + shift)
-        halves.append(np.hypot(tangents[..., 0], tangents[..., 1]) @ weights / 2)
-    return np.column_stack(halves)
+        owner = np.full((max(self.zone, default=0) + 1, len(self.mesh.elements), 3), len(self))  # else one too many
+        owner[self.zone_of_share, self.element, self.local] = self.point
+        of_zone, element = np.nonzero((owner < len(self)).any(axis=2))
+        i, J = owner[of_zone, element], np.zeros((len(self) + 1, len(self) + 1))
+        np.add.at(J, (i[:, :, None], i[:, None, :]), local[element])
+        return J[:-1, :-1]
 
 
 def contact_points(
-    problem: Problem,
-    mesh: Mesh,
+    outline: Outline,
     values: BoundaryValues,
     deflections: Mapping[str, Array],
     cases: Sequence[BoundaryValues] = (),
@@ -163,13 +144,16 @@ def contact_points(
     A node in several zones is a point of those only to whose surfaces it is turned: normals that oppose one another
     would make the compliance singular.
     """
-    halves = half_lengths(mesh)
+    problem, mesh, halves = outline.problem, outline.mesh, outline.mesh.halves
     tool_of = {zone: tool for tool, stated in problem.tools.items() for zone in stated.zones}
     pieces: list[_Piece] = []
-    in_zones, choice = _elements_of_zones(problem, mesh)
+    in_zones, has = outline.in_zones, np.zeros((len(problem.contact_zones), len(mesh.nodes)), bool)
+    of_zone, element = np.nonzero(in_zones)
+    has[of_zone[:, None], mesh.elements[element]] = True
+    choice = has.sum(axis=0) > 1
     middles = mesh.elements[:, 1]
     for number, (name, zone) in enumerate(problem.contact_zones.items()):
-        in_zone, faces = in_zones[number], _faces(problem, zone.surface, mesh, halves, deflections.get(name))
+        in_zone, faces = in_zones[number], _faces(outline, zone.surface, deflections.get(name))
         for elements, closed in _between_corners(mesh, runs(mesh, in_zone), faces):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
             gap, normals, lies = faces.along(nodes, closed=closed)
@@ -231,41 +215,16 @@ class _NodeFaces(NamedTuple):
         return nodes
 
 
-def _elements_of_zones(problem: Problem, mesh: Mesh) -> tuple[BoolArray, BoolArray]:
-    """Which elements each zone has (zones, m), and which nodes (N,) are in several zones."""
-    edges = [[mesh.edge_names.index(edge) for edge in problem.edges_of(name)] for name in problem.contact_zones]
-    in_zones = np.array([np.isin(mesh.edge, own) for own in edges])
-    count = np.zeros(len(mesh.nodes), int)
-    for own in in_zones:
-        count[np.unique(mesh.elements[own])] += 1
-    return in_zones, count > 1
-
-
-def _faces(problem: Problem, surface: RigidSurface, mesh: Mesh, halves: Array, deflection: Array | None) -> _NodeFaces:
+def _faces(outline: Outline, surface: RigidSurface, deflection: Array | None) -> _NodeFaces:
     """Faces of a surface at all nodes, or of the deflected contour."""
     if isinstance(surface, DeflectedContour):
         assert deflection is not None
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in surface.behind(deflection))
         held = Faces(gap, normals, normals)
     else:
-        held = surface.faces(mesh.nodes, *sides_of_nodes(problem, mesh, halves))
+        held = surface.faces(outline.mesh.nodes, *outline.sides)
     other = np.hypot(*np.moveaxis(held.normals - held.normals[:, [2, 0, 0]], 2, 0)) > ALIKE
-    return _NodeFaces(*held, other | (abs(held.gap - held.gap[:, [2, 0, 0]]) > ALIKE * mesh.size))
-
-
-def sides_of_nodes(problem: Problem, mesh: Mesh, halves: Array) -> tuple[Array, Array]:
-    """Normals (N, 2, 2) into the body before and after each node, and the distance (N,) [L] that is near to it.
-
-    They are those of the edges themselves, and equal where these are smooth up to round-off.
-    """
-    before, elements = mesh.before, np.arange(len(mesh.elements))
-    inward = Outline(problem=problem).places(elements, np.tile(reference_element.NODES, (len(elements), 1))).inward
-    ends = np.stack([inward[before, 2], inward[:, 0]], axis=1)
-    smooth = np.hypot(*(ends[:, 1] - ends[:, 0]).T) < ROUGH
-    ends[smooth] = ends[smooth, :1]
-    middles = np.repeat(inward[:, 1, None], 2, axis=1)
-    near = np.minimum(halves[before, 1], halves[:, 0])
-    return np.concatenate([ends, middles]), np.concatenate([near, np.zeros(len(near))])
+    return _NodeFaces(*held, other | (abs(held.gap - held.gap[:, [2, 0, 0]]) > ALIKE * outline.mesh.size))
 
 
 def _between_corners(
@@ -359,8 +318,9 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
     triples = np.column_stack(
         [np.concatenate(elements), np.tile(np.arange(3), sum(map(len, elements)) // 3), np.concatenate(points)]
     )
-    _, once = np.unique(triples, axis=0, return_index=True)  # zones that share an edge and a face share its points
-    element, local, point = triples[np.sort(once)[triples[np.sort(once), 2] >= 0]].T
+    code = (triples[:, 0] * 3 + triples[:, 1]) * (len(node) + 1) + triples[:, 2] + 1
+    once = np.sort(np.unique(code, return_index=True)[1])  # zones that share an edge and a face share its points
+    element, local, point = triples[once[triples[once, 2] >= 0]].T
     return ContactPoints(
         mesh=mesh,
         node=node[own],

@@ -20,7 +20,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import kernels, reference_element
-from bemcontact.bem.kernels import Components, GaussRule
+from bemcontact.bem.kernels import GaussRule
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.skeleton import RATIO, disc, skeleton
 from bemcontact.blas_threads import one_thread
@@ -161,11 +161,14 @@ class Influence:
         return kernels.factors(self.poisson_ratio)
 
     @cached_property
-    def _rules(self) -> list[tuple[GaussRule, ComplexArray]]:
-        """For each tier: the rule, and dζ/dξ (n, m) at its Gauss points."""
-        rules = [kernels.gauss_rule(int(order), self.factors) for order in reference_element.ORDERS]
-        from_middle = self.element_nodes - self.element_nodes[:, 1:2]
-        return [(rule, rule.derivatives.T @ from_middle.T) for rule in rules]
+    def _rules(self) -> list[GaussRule]:
+        """The rule of each tier."""
+        return [kernels.gauss_rule(int(order), self.factors) for order in reference_element.ORDERS]
+
+    @cached_property
+    def _from_middle(self) -> ComplexArray:
+        """Nodes (m, 3) of each element, counted from its middle."""
+        return self.element_nodes - self.element_nodes[:, 1:2]
 
     def each_block(self, collocation: Collocation, use: Callable[[InfluenceRows], None]) -> None:
         """Compute rows of F and G for all points and pass them to `use`, block by block, on `threads` processors.
@@ -254,18 +257,17 @@ class Influence:
         self, block: InfluenceRows, z: ComplexArray, nodes: ComplexArray, tier: int, run: slice
     ) -> None:
         """Every point with every element of a run by products of matrices, in parts that fit into the cache."""
-        rule, tangent = self._rules[tier]
-        middle, _ = disc(z)
+        rule, (middle, _) = self._rules[tier], disc(z)
         zeta = rule.shapes.T @ (nodes - middle).T
         with_U = bool(self._slot[run.start] >= 0)
-        polynomials = kernels.numerator_polynomials(zeta, tangent[:, run])
+        polynomials = kernels.numerator_polynomials(zeta, rule.derivatives.T @ self._from_middle[run].T)
         powers = kernels.point_powers(z - middle)
         step = max(1, CACHE_SIZE // (len(z) * len(zeta)))
         for first in range(0, run.stop - run.start, step):
             some = polynomials[..., first : first + step]
             integrands = (some.reshape(6, -1).T @ powers).reshape(*some.shape[1:], len(z))
             part = slice(run.start + first, run.start + first + some.shape[-1])
-            result = kernels.regular(integrands, rule, self.factors, with_U=with_U)
+            result = kernels.regular(integrands, rule, with_U=with_U)
             self._add_to_rows(block, part, result.T)
             if result.U is not None:
                 block.G[:, :, _successive(self._slot[part])] = result.U
@@ -278,16 +280,16 @@ class Influence:
         tiers = reference_element.tier(reference_element.bernstein_parameter(root.r))
         on_element, on = self._on_elements(block, collocation, element)
         tiers[on_element] = -1
-        T, U = np.empty((4, 3, len(tau))), np.empty((3, 3, len(tau)))
-        T[..., on_element], U[..., on_element] = on
-        for tier in np.unique(tiers[tiers >= 0]):
-            at = np.flatnonzero(tiers == tier)
-            if tier < len(reference_element.ORDERS):
-                result = self._regular(tau[at], int(tier))
-            else:
-                part = kernels.Root(root.r[at], root.minus[at], root.plus[at])
-                result = kernels.components(kernels.near_singular(tau[at], part), self.factors)
-            T[..., at], U[..., at] = result
+        near = np.flatnonzero(tiers == len(reference_element.ORDERS))
+        tiers[near] = -1
+        beside = kernels.beside_element(tau[near], kernels.Root(*(part[near] for part in root)))
+        T, U, nodes = np.empty((4, 3, len(tau))), np.empty((3, 3, len(tau))), np.empty((3, 2, len(tau)))
+        nodes[:, 0], nodes[:, 1] = tau.real.T, tau.imag.T
+        at = np.append(on_element, near)
+        T[..., at], U[..., at] = kernels.components(kernels.with_root_split_off(on.and_those(beside)), self.factors)
+        for tier in np.unique(tiers[tiers >= 0]).tolist():
+            at, rule = np.flatnonzero(tiers == tier), self._rules[tier]
+            T[..., at], U[..., at] = kernels.regular(kernels.numerators(nodes[..., at], rule), rule, with_U=True)
         shape = (len(element), len(base))
         T, U = T.reshape(4, 3, *shape), U.reshape(3, 3, *shape)
         self._add_to_rows(block, element, T)
@@ -297,22 +299,16 @@ class Influence:
         if known.any():
             np.add(block.known, _sums(known, U), out=block.known)
 
-    def _regular(self, tau: ComplexArray, tier: int) -> Components:
-        """Pairs (p, 3), each by itself, with one Gauss rule."""
-        rule, _ = self._rules[tier]
-        integrands = kernels.numerators(rule.shapes.T @ tau.T, rule.derivatives.T @ tau.T)
-        return kernels.regular(integrands, rule, self.factors, with_U=True)
-
     def _on_elements(
         self, block: InfluenceRows, collocation: Collocation, element: IntArray
-    ) -> tuple[IntArray, Components]:
-        """Pairs whose point lies on the element: their places among all of (element, point), and their integrals."""
+    ) -> tuple[IntArray, kernels.Singular]:
+        """Pairs whose point lies on the element: their places among all of (element, point)."""
         point = collocation.on_point
         on = np.flatnonzero((point >= block.rows.start) & (point < block.rows.stop))
         their, local = collocation.on_element[on], collocation.on_local[on]
         row = point[on] - block.rows.start
         at = np.searchsorted(element, their) * block.F.shape[-1] + row
-        return at, kernels.components(kernels.singular(self.element_nodes[their], local), self.factors)
+        return at, kernels.on_element(self.element_nodes[their], local)
 
     def _add_to_rows(self, block: InfluenceRows, element: IntArray | slice, T: Array) -> None:
         """Add the integrals of T over some elements (4, 3, e, R)."""

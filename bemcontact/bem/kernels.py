@@ -12,7 +12,7 @@ All integrals are the limits for z coming from *outside* the body (the body is o
 the free term of Somigliana's identity is then part of A, at corners of any angle.
 
 Far from z, Gauss's rules (`regular`). Near z, the root r of the element map, τ = (ξ - r)(c2 ξ + c1 + c2 r), is split
-off exactly and what is left is smooth (`near_singular`, `singular`). The idea of integrating against the pole found by
+off exactly and what is left is smooth (`Singular`). The idea of integrating against the pole found by
 continuation of the map: Helsing and Ojala (2008), af Klinteberg and Barnett (2021); the closed forms are ours.
 """
 
@@ -99,18 +99,22 @@ class GaussRule(NamedTuple):
     """A Gauss rule with n points, and the matrices by which it sums the integrands of `regular`.
 
     shapes, derivatives : (3, n) N_k and dN_k/dξ
+    both : (2n, 3) their transposes, one below the other
     weighted : (3, n) N_k times the weights
     T_diagonal, T_cross : (6, 2n) for [Re S, Im A] and [Im S, Re A]
     U_diagonal, U_cross : (6, 2n) for [ln|τ|², Re τ/conj τ] and (3, n) for Im τ/conj τ
+    U_constant : (6, 1) what is added to the former
     """
 
     shapes: Array
     derivatives: Array
+    both: Array
     weighted: Array
     T_diagonal: Array
     T_cross: Array
     U_diagonal: Array
     U_cross: Array
+    U_constant: Array
 
 
 @lru_cache(maxsize=64)
@@ -124,24 +128,31 @@ def gauss_rule(order: int, factor: Factors) -> GaussRule:
     return GaussRule(
         shapes=shapes,
         derivatives=derivatives(xi).T,
+        both=np.vstack([shapes.T, derivatives(xi)]),
         weighted=S,
         T_diagonal=np.block([[-skew, normal], [skew, normal]]),
         T_cross=np.block([[-skew, -tangential], [-skew, tangential]]),
         U_diagonal=np.block([[-log, turn], [-log, -turn]]),
         U_cross=turn,
+        U_constant=factor.turn * np.tile(INTEGRALS, 2)[:, None],
     )
 
 
-def numerators(tau: ComplexArray, tangent: ComplexArray) -> Array:
-    """|τ|², Re τ², Im(conj(τ) ζ'), Im τ², Re(conj(τ) ζ') (5, n, p) at Gauss points τ, ζ' (n, p) of p pairs."""
-    x, y, dx, dy = tau.real, tau.imag, tangent.real, tangent.imag
-    result = np.empty((5, *tau.shape))
+def numerators(nodes: Array, rule: GaussRule) -> Array:
+    """|τ|², Re τ², Im(conj(τ) ζ'), Im τ², Re(conj(τ) ζ') (5, n, p) at the Gauss points of p pairs.
+
+    `nodes` (3, 2, p) are the real and the imaginary parts of τ = ζ - z at the nodes.
+    """
+    at = (rule.both @ nodes.reshape(3, -1)).reshape(2, len(rule.both) // 2, 2, -1)
+    (x, dx), (y, dy) = at[:, :, 0], at[:, :, 1]
+    result = np.empty((5, *x.shape))
     xx, yy = x * x, y * y
     np.add(xx, yy, out=result[0])
     np.subtract(xx, yy, out=result[1])
-    np.subtract(x * dy, y * dx, out=result[2])
-    np.multiply(2 * x, y, out=result[3])
-    np.add(x * dx, y * dy, out=result[4])
+    np.subtract(np.multiply(x, dy, out=xx), np.multiply(y, dx, out=yy), out=result[2])
+    np.multiply(x, y, out=result[3])
+    result[3] *= 2
+    np.add(np.multiply(x, dx, out=xx), np.multiply(y, dy, out=yy), out=result[4])
     return result
 
 
@@ -165,7 +176,7 @@ def point_powers(z: ComplexArray) -> Array:
     return np.stack([np.ones(len(z)), z.real, z.imag, (z * z).real, (z * z).imag, (z * z.conj()).real])
 
 
-def regular(integrands: Array, rule: GaussRule, factor: Factors, *, with_U: bool) -> Components:
+def regular(integrands: Array, rule: GaussRule, *, with_U: bool) -> Components:
     """Gauss's rule, for pairs with a root that is far enough away.
 
     Parameters
@@ -175,7 +186,7 @@ def regular(integrands: Array, rule: GaussRule, factor: Factors, *, with_U: bool
     with_U : whether the integrals of U are wanted
     """
     _, n, *pairs = integrands.shape
-    square, cos, normal, sin, _ = (np.asarray(part) for part in integrands)
+    square, cos, normal, sin, _ = integrands
     rows = integrands.reshape(5 * n, -1)
     integrands[1:] *= np.divide(1, square, out=None if with_U else square)
     U = None
@@ -184,7 +195,7 @@ def regular(integrands: Array, rule: GaussRule, factor: Factors, *, with_U: bool
         U = np.empty((9, rows.shape[1]))
         np.matmul(rule.U_diagonal, rows[: 2 * n], out=U[:6])
         np.matmul(rule.U_cross, rows[3 * n : 4 * n], out=U[6:])
-        U[:6] += factor.turn * np.tile(INTEGRALS, 2)[:, None]
+        U[:6] += rule.U_constant
         U = U.reshape(3, 3, *pairs)
     cos *= normal
     sin *= normal
@@ -221,14 +232,35 @@ def nearest_root(tau: ComplexArray) -> Root:
     return Root(start + step, (start - 1) + step, (start + 1) + step)
 
 
-def near_singular(tau: ComplexArray, root: Root) -> Integrals:
+class Singular(NamedTuple):
+    """Pairs (p, …) whose root is split off.
+
+    Parameters
+    ----------
+    nodes : (p, 3) ζ at the nodes, or τ
+    root : nearest to the element
+    log_ratio : (p,) ∫ dξ/(ξ - r)
+    end_turn : (p, 2) τ/conj τ at both ends, zero where τ vanishes
+    """
+
+    nodes: ComplexArray
+    root: Root
+    log_ratio: ComplexArray
+    end_turn: ComplexArray
+
+    def and_those(self, other: "Singular") -> "Singular":
+        """These pairs, then others."""
+        nodes, log_ratio, turn = (np.concatenate([self[i], other[i]]) for i in (0, 2, 3))
+        return Singular(nodes, Root(*map(np.concatenate, zip(self.root, other.root, strict=True))), log_ratio, turn)
+
+
+def beside_element(tau: ComplexArray, root: Root) -> Singular:
     """Pairs whose point is near the element but not on it, from τ = ζ - z (p, 3) at the nodes and its nearest root."""
-    log_ratio = np.log(root.minus / root.plus)
-    ends = tau[:, [0, 2]]
-    return _with_root_split_off(tau, root, log_ratio, ends / ends.conj())
+    ends = tau[:, ::2]
+    return Singular(tau, root, np.log(root.minus / root.plus), ends / ends.conj())
 
 
-def singular(nodes: ComplexArray, local: Array) -> Integrals:
+def on_element(nodes: ComplexArray, local: Array) -> Singular:
     """Pairs whose point lies on the element of nodes (p, 3), at ξ0 (p,); one-sided limits from outside the body.
 
     At an end of the element A_k of the node there diverges like ln|τ|; that part cancels against the neighbor's and
@@ -246,11 +278,12 @@ def singular(nodes: ComplexArray, local: Array) -> Integrals:
     tau[local == -1, 0] = 0
     tau[local == 1, 1] = 0
     turn = np.divide(tau, tau.conj(), out=np.zeros_like(tau), where=tau != 0)
-    return _with_root_split_off(nodes, root, log_ratio, turn)
+    return Singular(nodes, root, log_ratio, turn)
 
 
-def _with_root_split_off(nodes: ComplexArray, root: Root, log_ratio: ComplexArray, end_turn: ComplexArray) -> Integrals:
-    """A, B, L, M from the root, ∫ dξ/(ξ - r), and τ / conj τ at both ends (zero where τ vanishes)."""
+def with_root_split_off(pairs: Singular) -> Integrals:
+    """A, B, L, M of pairs whose Gauss rules would need too many points."""
+    nodes, root, log_ratio, end_turn = pairs
     _, c1, c2 = element_coefficients(nodes)
     r = root.r
     d = c1 + c2 * r

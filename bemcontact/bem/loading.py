@@ -61,6 +61,8 @@ def true_resultant(problem: Problem, center: Array) -> tuple[Array, float]:
 
     The center is near the body, so that coordinates far from the origin do no harm.
     """
+    if not (problem.loads.gravity or problem.loads.centrifugal):
+        return np.zeros(2), 0.0
     area, moments = 0.0, np.zeros(2)
     for edge in problem.boundary.edges:
         points, normals, lengths = along_curve(edge)
@@ -216,7 +218,7 @@ def _loading(problem: Problem, mesh: Mesh, conditions: Mapping[str, Condition], 
     acting = problem.model_copy(update={"conditions": dict(conditions), "loads": loads})
     force, moment = true_resultant(acting, mesh.center)
     for edge in problem.boundary.edges:
-        if edge.name in conditions:
+        if edge.name in conditions and conditions[edge.name].presses:
             points, normals, lengths = along_curve(edge)
             forces = lengths[:, None] * applied_traction(conditions[edge.name], points, normals)
             x, y = (points - mesh.center).T

@@ -15,6 +15,8 @@ from bemcontact.problem.conditions import AxisFields, Condition, Field
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.problem import Problem
 
+ARC_ORDER = 12
+"""Gauss points for the arc length of half an element."""
 CURVE_ORDER = 16
 """Gauss points for each element's piece of the curve itself."""
 CONTRADICTION = 1e-9
@@ -48,7 +50,7 @@ class Mesh:
         """Number of unknowns, two for each node."""
         return 2 * len(self.nodes)
 
-    @property
+    @cached_property
     def before(self) -> IntArray:
         """(m,) the element that ends where each element starts."""
         before = np.empty(len(self.elements), int)
@@ -98,7 +100,7 @@ class Mesh:
         rotated = np.stack([self.tangents[..., 1], -self.tangents[..., 0]], axis=-1)
         return rotated / self.jacobians[..., None]
 
-    @property
+    @cached_property
     def turns(self) -> Array:
         """Sine (m,) of the angle by which the boundary turns to the right where each element starts."""
         return np.sum(self.normals[self.before, 2] * self.tangents[:, 0], axis=1) / self.jacobians[:, 0]
@@ -113,6 +115,18 @@ class Mesh:
     def tributary(self) -> Array:
         """Length (m, 3) [L] that belongs to each (element, local node): (1/3, 4/3, 1/3) |dx/dξ|."""
         return reference_element.INTEGRALS * self.jacobians
+
+    @cached_property
+    def halves(self) -> Array:
+        """Arc length (m, 2) [L] of the first and the second half of each element."""
+        xi, weights = reference_element.gauss_legendre(ARC_ORDER)
+        tangents = self.tangents_at(np.concatenate([xi / 2 - 0.5, xi / 2 + 0.5]))
+        return np.hypot(tangents[..., 0], tangents[..., 1]).reshape(-1, 2, ARC_ORDER) @ weights / 2
+
+    @property
+    def lengths(self) -> Array:
+        """Arc length (m,) [L] of each element."""
+        return self.halves.sum(axis=1)
 
     def tangents_at(self, xi: Array) -> Array:
         """dx/dξ (m, q, 2) [L] at the local coordinates ξ (q,) of each element."""
@@ -236,9 +250,10 @@ def boundary_values(problem: Problem, mesh: Mesh) -> BoundaryValues:
             values.displacement_given[nodes, axis] = True
             values.traction_unknown[elements, axis] = True
             owner[nodes, axis] = index
-        values.traction[elements] = applied_traction(
-            condition, mesh.nodes[mesh.elements[elements]], mesh.normals[elements]
-        )
+        if condition.presses:
+            values.traction[elements] = applied_traction(
+                condition, mesh.nodes[mesh.elements[elements]], mesh.normals[elements]
+            )
     if issues:
         raise ProblemError(issues)
     return values

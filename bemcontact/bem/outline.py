@@ -1,14 +1,15 @@
 """Places on the curves of the edges themselves, by the local coordinates of the elements on them."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, IntArray
-from bemcontact.bem.mesh import Mesh, build
+from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.bem import reference_element
+from bemcontact.bem.mesh import Mesh
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.nearest_places import nearest_places, surface_corners
 from bemcontact.problem.problem import Problem
@@ -19,6 +20,8 @@ SAMPLES = np.linspace(-1.0, 1.0, 17)
 """Local coordinates at which the boundary is compared with a surface; some are moved, see `Outline.local`."""
 NODES = [0, len(SAMPLES) // 2, -1]
 """Which of them are nodes."""
+ROUGH = 1e-7
+"""Difference of the unit normals of two edges below which they meet smoothly."""
 
 
 class Places(NamedTuple):
@@ -33,12 +36,7 @@ class Outline:
     """The curves of the edges under the elements of a mesh; the places of samples are computed once."""
 
     problem: Problem
-    samples: dict[int, tuple[Array, Array]] = field(default_factory=dict)
-
-    @cached_property
-    def mesh(self) -> Mesh:
-        """The elements."""
-        return build(self.problem)
+    mesh: Mesh
 
     @cached_property
     def _elements(self) -> tuple[IntArray, Array]:
@@ -58,9 +56,9 @@ class Outline:
         local, free = np.tile(SAMPLES, (len(of_edge), 1)), np.ones((len(of_edge), len(SAMPLES)), bool)
         free[:, NODES] = False
         for number, edge in enumerate(self.problem.boundary.edges):
-            own = np.flatnonzero(of_edge == number)
             for name, zone in self.problem.contact_zones.items():
                 for place in _narrow_places(edge, zone.surface, paired=edge.name in self.problem.edges_of(name)):
+                    own = np.flatnonzero(of_edge == number)
                     element = own[min(int(np.searchsorted(fractions[own, 1], place)), len(own) - 1)]
                     first, last = fractions[element]
                     xi = 2 * (place - first) / (last - first) - 1
@@ -69,29 +67,62 @@ class Outline:
                         local[element, away.argmin()], free[element, away.argmin()] = xi, False
         return np.sort(local, axis=1)
 
+    @cached_property
+    def shapes(self) -> Array:
+        """Shape functions (m, 17, 3) at the samples."""
+        return reference_element.values(self.local)
+
+    @cached_property
+    def in_zones(self) -> BoolArray:
+        """Which elements each contact zone has, (zones, m)."""
+        names, zones = self.mesh.edge_names, map(self.problem.edges_of, self.problem.contact_zones)
+        of_edges = np.array([[name in edges for name in names] for edges in zones], bool).reshape(-1, len(names))
+        return of_edges[:, self.mesh.edge]
+
     def places(self, elements: IntArray, xi: Array) -> Places:
         """Places at the local coordinates ξ (k, q) of elements (k,)."""
+        points = self._on_edges(elements, xi, Edge.points)
+        return Places(points, -self._on_edges(elements, xi, Edge.normals))
+
+    def _on_edges(self, elements: IntArray, xi: Array, values: Callable[[Edge, Array], Array]) -> Array:
+        """Values (k, q, 2) of edges by fractions of their length, at local coordinates ξ (k, q) of elements (k,)."""
         of_edge, fractions = self._elements
-        points, inward = np.empty((*xi.shape, 2)), np.empty((*xi.shape, 2))
-        first, last = fractions[elements].T[..., None]
-        along = first + (last - first) * (1 + xi) / 2
-        for number in np.unique(of_edge[elements]):
-            edge, on = self.problem.boundary.edges[number], of_edge[elements] == number
-            flat = along[on].ravel()
-            points[on] = edge.points(flat).reshape(-1, xi.shape[1], 2)
-            inward[on] = -edge.normals(flat).reshape(-1, xi.shape[1], 2)
-        return Places(points, inward)
+        number, (first, last) = of_edge[elements], fractions[elements].T[..., None]
+        along, result = first + (last - first) * (1 + xi) / 2, np.empty((*xi.shape, 2))
+        for i in sorted({*number.tolist()}):
+            on = number == i
+            result[on] = values(self.problem.boundary.edges[i], along[on].ravel()).reshape(-1, xi.shape[1], 2)
+        return result
+
+    @cached_property
+    def _samples(self) -> tuple[BoolArray, Array, Array]:
+        """For each element (m,), whether its samples have been placed yet; their points and normals (m, 17, 2)."""
+        points, inward = np.zeros((2, *self.local.shape, 2))
+        return np.zeros(len(points), bool), points, inward
 
     def sampled(self, elements: IntArray) -> Places:
         """Places at the samples of elements (k,)."""
-        if not len(elements):
-            return Places(*np.zeros((2, 0, len(SAMPLES), 2)))
-        missing = np.array([i for i in elements.tolist() if i not in self.samples], int)
+        placed, points, inward = self._samples
+        missing = elements[~placed[elements]]
         if len(missing):
-            new = self.places(missing, self.local[missing])
-            self.samples.update(zip(missing.tolist(), zip(*new, strict=True), strict=True))
-        points, inward = zip(*(self.samples[i] for i in elements.tolist()), strict=True)
-        return Places(np.array(points), np.array(inward))
+            points[missing], inward[missing] = self.places(missing, self.local[missing])
+            placed[missing] = True
+        return Places(points[elements], inward[elements])
+
+    @cached_property
+    def sides(self) -> tuple[Array, Array]:
+        """Normals (N, 2, 2) into the body before and after each node, and the distance (N,) [L] that is near to it.
+
+        They are those of the edges themselves, and equal where these are smooth up to round-off.
+        """
+        before, halves, elements = self.mesh.before, self.mesh.halves, np.arange(len(self.mesh.elements))
+        inward = -self._on_edges(elements, np.tile(reference_element.NODES, (len(elements), 1)), Edge.normals)
+        ends = np.stack([inward[before, 2], inward[:, 0]], axis=1)
+        smooth = np.hypot(*(ends[:, 1] - ends[:, 0]).T) < ROUGH
+        ends[smooth] = ends[smooth, :1]
+        middles = np.repeat(inward[:, 1, None], 2, axis=1)
+        near = np.minimum(halves[before, 1], halves[:, 0])
+        return np.concatenate([ends, middles]), np.concatenate([near, np.zeros(len(near))])
 
 
 def _narrow_places(edge: Edge, surface: RigidSurface, *, paired: bool) -> Iterable[float]:

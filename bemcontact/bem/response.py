@@ -61,8 +61,9 @@ class Response:
 
         step = correction(probes)
         reduced[:, :loads] += step[:, :loads]
-        changed, whole = lu.backward(step[:, loads], count), lu.backward(reduced[:, loads:] @ signs, count)
-        if np.abs(changed).max(initial=0.0) > PROBED * np.abs(whole).max(initial=0.0):
+        changes = lu.backward(np.column_stack([step[:, loads], reduced[:, loads:] @ signs]))[len(order) - count :]
+        change, size = np.abs(changes).max(axis=0, initial=0.0)
+        if change > PROBED * size:
             reduced += correction(np.eye(right.shape[1]))
         return cls(lu=lu, order=order, reduced=reduced, last=lu.backward(reduced, count))
 
@@ -79,7 +80,7 @@ class Response:
         """Rows (r, c) of X, which are among those that were solved."""
         place = np.empty(len(self.order), int)
         place[self.order] = np.arange(len(self.order)) - (len(self.order) - len(self.last))
-        return self.last[place[at]]
+        return self.last.T.take(place[at], axis=1).T
 
     def combined(self, weights: Array) -> Array:
         """X w (size,) for weights (c,) of loads and pressures."""

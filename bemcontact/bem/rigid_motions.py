@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import block_diag
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.contact_points import ContactPoints
@@ -98,7 +97,7 @@ def free_rigid_motions(mesh: Mesh, prescribed: BoolArray) -> RigidMotions:
     """Find the rigid motions that move no prescribed displacement component (N, 2); translations come first."""
     every = all_rigid_motions(mesh)
     rows = every.displacement(mesh.nodes)[prescribed]
-    _, values, vectors = np.linalg.svd(np.vstack([rows, np.zeros((3, 3))]))
+    values, vectors = _short_svd(rows)
     free = values <= HELD * max(1.0, values[0])
     return RigidMotions(coefficients=echelon(vectors[free]), center=every.center, radius=every.radius)
 
@@ -300,13 +299,14 @@ def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTool
         to_points=to_points,
         radius=of_body.radius,
     )
-    held = np.pad(of_body.coefficients, ((0, 0), (0, 3 * t)))
-    guided = np.eye(3 + 3 * t)[3:][tools.free]
-    (body, lost), (loaded, idle) = _split(basis, held), _split(basis, guided)
-    both = np.vstack([body, loaded])
-    together = _null_vectors(basis @ both.T)
-    apart = _null_vectors(together[: len(body)].T)
-    seen, unseen = np.vstack([echelon(apart.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
+    held = np.hstack([of_body.coefficients, np.zeros((len(of_body), 3 * t))])
+    seen, unseen = _split(basis, held)
+    if tools.free.any():
+        (body, lost), (loaded, idle) = (seen, unseen), _split(basis, np.eye(3 + 3 * t)[3:][tools.free])
+        both = np.vstack([body, loaded])
+        together = _null_vectors(basis @ both.T)
+        apart = _null_vectors(together[: len(body)].T)
+        seen, unseen = np.vstack([echelon(apart.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
     return replace(every, coefficients=_counterclockwise(seen)), replace(every, coefficients=_counterclockwise(unseen))
 
 
@@ -320,8 +320,11 @@ def _counterclockwise(motions: Array) -> Array:
 
 def _to_points(levers: Array, radius: float) -> Array:
     """Motion (3 t, 3 t) of tools about their points from that about their poles, at levers (t, 2) from these."""
-    blocks = [[[1.0, 0.0, -y / radius], [0.0, 1.0, x / radius], [0.0, 0.0, 1 / radius]] for x, y in levers]
-    return np.asarray(block_diag(np.zeros((0, 0)), *blocks), float)
+    motions = np.zeros((3 * len(levers), 3 * len(levers)))
+    for first, (x, y) in zip(range(0, len(motions), 3), levers.tolist(), strict=True):
+        own = slice(first, first + 3)
+        motions[own, own] = [[1.0, 0.0, -y / radius], [0.0, 1.0, x / radius], [0.0, 0.0, 1 / radius]]
+    return motions
 
 
 def _split(basis: Array, motions: Array) -> tuple[Array, Array]:
@@ -340,4 +343,6 @@ def _null_vectors(matrix: Array) -> Array:
 def _short_svd(matrix: Array) -> tuple[Array, Array]:
     """Singular values (k,), zeros included, and right singular vectors (k, k) of a matrix (n, k)."""
     k = matrix.shape[1]
+    if k == 0:
+        return np.zeros(0), np.zeros((0, 0))
     return np.linalg.svd(np.vstack([matrix, np.zeros((k, k))]), full_matrices=False)[1:]

@@ -7,13 +7,15 @@ that of the elements.
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
-from bemcontact.bem.contact_points import ALIKE, half_lengths, sides_of_nodes
+from bemcontact.bem.body import Body
+from bemcontact.bem.contact_points import ALIKE
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import NODES, Outline
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -143,20 +145,20 @@ class SurfaceGaps:
     def held(self) -> dict[str, Faces]:
         """Faces that hold the nodes (m, 3) of elements, by zone, as in contact."""
         mesh, side = self.outline.mesh, [2, 0, 0]
-        sides = sides_of_nodes(self.problem, mesh, half_lengths(mesh))
-        faces = {name: surface.faces(mesh.nodes, *sides) for name, surface in self.surfaces.items()}
+        faces = {name: surface.faces(mesh.nodes, *self.outline.sides) for name, surface in self.surfaces.items()}
         return {name: Faces(*(part[mesh.elements, side] for part in item)) for name, item in faces.items()}
 
-    def paired(self, zone: str) -> BoolArray:
-        """Whether each element (m,) belongs to a zone, or to another one that pairs it with the same face and tool."""
+    @cached_property
+    def paired(self) -> dict[str, BoolArray]:
+        """By zone, whether each element (m,) belongs to it, or to another zone with the same face there and tool."""
         tools = {name: tool for tool, stated in self.problem.tools.items() for name in stated.zones}
-        own, paired = self.held[zone], np.zeros(len(self.state.points), bool)
-        for name, held in self.held.items():
-            apart = np.hypot(*np.moveaxis(held.normals - own.normals, 2, 0)) > ALIKE
-            apart |= abs(held.gap - own.gap) > ALIKE * self.problem.boundary.size
+        in_zones, names = self.outline.in_zones, [*self.problem.contact_zones]
+        paired = {name: in_zones[names.index(name)].copy() for name in self.surfaces}
+        for (zone, own), (name, held) in permutations(self.held.items(), 2):
             if tools.get(name) == tools.get(zone):
-                edges = [self.state.edge_names.index(edge) for edge in self.problem.edges_of(name)]
-                paired |= np.isin(self.state.edge, edges) & ~apart.any(axis=1)
+                apart = np.hypot(*np.moveaxis(held.normals - own.normals, 2, 0)) > ALIKE
+                apart |= abs(held.gap - own.gap) > ALIKE * self.problem.boundary.size
+                paired[zone] |= in_zones[names.index(name)] & ~apart.any(axis=1)
         return paired
 
     def linear(self, zone: str, elements: IntArray) -> Faces:
@@ -169,7 +171,7 @@ class SurfaceGaps:
         faces = self.surfaces[zone].faces(flat, inward, np.zeros(len(flat)))
         gap, normals, lies = (part[:, 0].reshape(at.points.shape[:-1] + part.shape[2:]) for part in faces)
         gap[:, NODES], normals[:, NODES], lies[:, NODES] = (part[elements] for part in held)
-        moved = self._displacement(elements) - self.tool_motion(zone, at.points)
+        moved = self._displacement[elements] - self.tool_motion(zone, at.points)
         return Faces(gap + np.sum(normals * moved, axis=-1), normals, lies)
 
     def exact(self, zone: str, moved: Array) -> Closest:
@@ -198,7 +200,7 @@ class SurfaceGaps:
 
     def moved(self, elements: IntArray) -> Array:
         """Displaced places (k, q, 2) [L] of elements (k,)."""
-        return self.outline.sampled(elements).points + self._displacement(elements)
+        return self.outline.sampled(elements).points + self._displacement[elements]
 
     def intrusion(self, zone: str) -> Intrusion:
         """How deep each element is in the surface of a zone, beyond what interpolation between its nodes explains.
@@ -208,7 +210,7 @@ class SurfaceGaps:
         that is behind the surface before anything moves does not count unless it fits it with interference, nor does
         one opposite to which the surface is taken to have ended.
         """
-        paired, near = self.paired(zone), self._near(zone)
+        paired, near = self.paired[zone], self._near(zone)
         m, ends = len(paired), self._ends(zone, paired)
         depth, xi, behind, hidden = np.full(m, -np.inf), np.zeros(m), np.zeros(m, bool), [-np.inf] * len(ends)
         for elements, own in ((np.flatnonzero(paired), True), (np.flatnonzero(~paired & near), False)):
@@ -230,12 +232,12 @@ class SurfaceGaps:
 
     def _depth_in_own(self, zone: str, elements: IntArray) -> Array:
         """Depth (k, q) [L] of elements (k,) of the zone."""
-        at, displacement = self.outline.sampled(elements), self._displacement(elements)
+        at, displacement = self.outline.sampled(elements), self._displacement[elements]
         here, there = self.linear(zone, elements), self.exact(zone, at.points + displacement)
         nodes = np.maximum(here.gap[:, None, NODES], 0.0)
         # where no node touches, what dips was not seen, and is no contact
         touching = nodes.min(axis=2) <= TOUCHES * nodes.max(axis=2)
-        shapes = reference_element.values(self.outline.local[elements])
+        shapes = self.outline.shapes[elements]
         dip = np.maximum(-np.sum(shapes * np.where(self._same(zone, here), nodes, 0.0), axis=2), 0.0) * touching
         other = np.sum(here.faces * there.normals, axis=-1) < SAME_FACE
         beyond = other & (-there.gap > self._second_order(zone)) & ~self._beside_corner(zone, elements)
@@ -247,7 +249,7 @@ class SurfaceGaps:
         Linear theory leaves open on which side of the corner they come to lie.
         """
         places = self.outline.sampled(elements).points
-        moved = np.hypot(*np.moveaxis(self._displacement(elements) - self.tool_motion(zone, places), 2, 0))
+        moved = np.hypot(*np.moveaxis(self._displacement[elements] - self.tool_motion(zone, places), 2, 0))
         beside, surface = np.zeros(moved.shape, bool), self.surfaces[zone]
         for corner in surface.points if isinstance(surface, Polyline) else ():
             beside |= np.hypot(*np.moveaxis(places - corner, 2, 0)) <= moved
@@ -267,7 +269,7 @@ class SurfaceGaps:
         Also whether each is behind, and the depth beyond each end; the local coordinates come last.
         """
         flush, at = FLUSH * self.problem.boundary.size, self.outline.sampled(elements)
-        motion = self._displacement(elements)
+        motion = self._displacement[elements]
         before, normals = self.undeformed(zone, at.points)
         after = self.exact(zone, at.points + motion).gap
         turned = np.sum(at.inward * normals, axis=-1) > TURNED
@@ -321,15 +323,15 @@ class SurfaceGaps:
         the zone. `before` (k, q) is the distance [L] of places from the surface, and `turned` (k, q) says whether they
         face it.
         """
-        size, mesh, paired = self.problem.boundary.size, self.outline.mesh, self.paired(zone)
+        size, mesh, paired = self.problem.boundary.size, self.outline.mesh, self.paired[zone]
         inside = before < -FLUSH * size
         behind = elements[inside.any(axis=1)]
-        deep = self._spread(elements[(before < -SNUG * size).any(axis=1)], behind)
-        faces = self._spread(elements[(inside & turned).any(axis=1)], behind)
+        deep = self._marked(elements[(before < -SNUG * size).any(axis=1)], behind)
+        faces = self._marked(elements[(inside & turned).any(axis=1)], behind)
         beside = (inside[:, 0] & paired[mesh.before[elements]]) | (inside[:, -1] & paired[mesh.elements[elements, 2]])
-        return ((faces & ~deep) | self._spread(elements[beside], behind))[elements]
+        return ((faces & ~deep) | self._marked(elements[beside], behind))[elements]
 
-    def _spread(self, marked: IntArray, over: IntArray) -> BoolArray:
+    def _marked(self, marked: IntArray, over: IntArray) -> BoolArray:
         """Mark (m,) all elements of the unbroken stretches of some elements in which one is marked."""
         mesh = self.outline.mesh
         found, allowed = np.zeros((2, len(mesh.elements)), bool)
@@ -345,8 +347,7 @@ class SurfaceGaps:
             for own in np.flatnonzero(paired & ~paired[neighbor]).tolist():
                 beyond, at = int(neighbor[own]), self.state.points[own, last]
                 normal = self.held[zone].normals[own, last]
-                pair = self.outline.sampled(np.array([own, beyond])).points
-                if self._lies_in_face(zone, pair, at, normal):
+                if self._lies_in_face(zone, np.array([own, beyond]), at, normal):
                     along = self.state.points[beyond, last] - at
                     along = along / np.hypot(*along)
                     foot = at - self.held[zone].gap[own, last] * normal
@@ -362,8 +363,8 @@ class SurfaceGaps:
         while not paired[element]:
             run.append(element)
             element = int(neighbor[element])
-        at, places = self.state.points[own, 1], self.outline.sampled(np.array(run)).points
-        return self._zones_of(own).isdisjoint(self._zones_of(element)) and self._lies_in_face(zone, places, at, normal)
+        apart = self._zones_of(own).isdisjoint(self._zones_of(element))
+        return apart and self._lies_in_face(zone, np.array(run), self.state.points[own, 1], normal)
 
     def _zones_of(self, element: int) -> set[str]:
         """Names of the zones that the edge of an element is in."""
@@ -374,12 +375,16 @@ class SurfaceGaps:
         """Whether the edge of an element is in any zone."""
         return bool(self._zones_of(element))
 
-    def _lies_in_face(self, zone: str, places: Array, at: Array, normal: Array) -> bool:
-        """Whether places (k, q, 2) of elements are on the line through a point (2,) with the normal (2,) of the face.
+    def _lies_in_face(self, zone: str, elements: IntArray, at: Array, normal: Array) -> bool:
+        """Whether elements (k,) are on the line through a point (2,) with the normal (2,) of the face.
 
         The line is the straight face itself, or is drawn inside it: then they fit with interference.
         """
-        flush, (gap, normals) = FLUSH * self.problem.boundary.size, self.undeformed(zone, places)
+        flush = FLUSH * self.problem.boundary.size
+        if np.abs((self.state.points[elements] - at) @ normal).max() > 2 * flush:
+            return False  # nodes are among the samples, up to round-off
+        places = self.outline.sampled(elements).points
+        gap, normals = self.undeformed(zone, places)
         straight = np.abs(normals - normal)[:, 1:-1].max() <= FLUSH  # at its ends there may be a corner of the surface
         return bool(straight and gap.max() <= flush and np.abs((places - at) @ normal).max() <= flush)
 
@@ -395,9 +400,15 @@ class SurfaceGaps:
         distances = (there - at) @ along
         yield from distances[distances > flush]
 
-    def _displacement(self, elements: IntArray) -> Array:
-        """Displacement (k, q, 2) [L] at the samples of elements (k,)."""
-        return reference_element.values(self.outline.local[elements]) @ self.state.displacement[elements]
+    @cached_property
+    def _displacement(self) -> Array:
+        """Displacement (m, q, 2) [L] at the samples of all elements."""
+        return self.outline.shapes @ self.state.displacement
+
+    @cached_property
+    def _spread(self) -> float:
+        """Largest difference of the displacements of two places [L]: translations do not count."""
+        return float(np.ptp(self.state.displacement.reshape(-1, 2) @ DIRECTIONS, axis=0).max())
 
     def _second_order(self, zone: str) -> float:
         """Depth [L] by which linear theory may be off: (difference of displacements)² over the size of the body.
@@ -406,10 +417,9 @@ class SurfaceGaps:
         """
         # only rotations and strains cause differences; translations are exact in linear theory
         size = self.problem.boundary.size
-        spread = np.ptp(self.state.displacement.reshape(-1, 2) @ DIRECTIONS, axis=0).max()
         turns = [abs(self.tools[name][2]) for name, tool in self.problem.tools.items() if zone in tool.zones]
         return float(
-            sum(min(moved / size, LARGEST_PART) * moved for moved in (spread, *(turn * size for turn in turns)))
+            sum(min(moved / size, LARGEST_PART) * moved for moved in (self._spread, *(turn * size for turn in turns)))
         )
 
     def _near(self, zone: str) -> BoolArray:
@@ -424,18 +434,12 @@ class SurfaceGaps:
         return near
 
 
-def surface_gaps(
-    problem: Problem,
-    state: BoundaryState,
-    contact: CondensedContact,
-    solution: ContactSolution,
-    outline: Outline | None = None,
-) -> SurfaceGaps:
+def surface_gaps(body: Body, state: BoundaryState, contact: CondensedContact, solution: ContactSolution) -> SurfaceGaps:
     """Compare the deformed boundary of a solution with the surfaces, where its tools have moved them."""
     moved = contact.tools.displacement(solution.rigid_amplitudes)
     return SurfaceGaps(
-        problem=problem,
-        outline=outline or Outline(problem=problem),
+        problem=body.problem,
+        outline=body.outline,
         state=state,
         tools=dict(zip(contact.tools.names, moved, strict=True)),
     )

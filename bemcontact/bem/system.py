@@ -10,7 +10,7 @@ In this module lengths are divided by L0 and stresses by the shear modulus (see 
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, lru_cache
 from importlib import import_module
 from typing import NamedTuple
 
@@ -23,11 +23,7 @@ from bemcontact.bem.flat import FlatColumns, FlatElements, FlatPoints, FlatRules
 from bemcontact.bem.influence import Collocation, Influence, InfluenceRows
 from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import BoundaryValues, Mesh
-from bemcontact.bem.response import Response
 from bemcontact.bem.rigid_motions import RigidMotions
-from bemcontact.blas_threads import one_thread
-from bemcontact.contact.lu import LU
-from bemcontact.errors import SingularSystemError
 from bemcontact.problem.material import Material
 
 OFFSET = 2 / 3
@@ -406,88 +402,3 @@ class System:
         sought = self.unknowns.traction >= 0
         traction[sought] = z[self.unknowns.traction[sought]] * self.stress
         return displacement, traction
-
-
-LARGEST_COPY = 2.5e8
-"""Largest matrix in bytes that is kept beside its factors; of larger ones rows are computed anew for the refinement."""
-POINTS_OF_RESIDUAL = 512
-"""Points whose rows machine code computes at a time for the refinement."""
-SINGULAR = 1e-15
-"""Reciprocal condition number below which the system counts as singular."""
-
-
-def assemble(system: System) -> tuple[Array, Array]:
-    """Set up the bordered matrix (size, size), in Fortran order for LU in place, and the right sides (size, s + n)."""
-    unknowns = system.unknowns.size
-    transposed = np.zeros((system.size + len(system.loadings) + len(system.points), system.size))
-    if system.machine_code is None:
-        _place_rows(system, transposed)
-    else:
-        system.machine_code(transposed, system.flat_points(), *system.flat_integrals())
-    matrix, right = transposed[: system.size].T, transposed[system.size :].T
-    matrix[:unknowns, unknowns:] = system.border
-    matrix[unknowns:, :unknowns] = system.null_vectors.T
-    return matrix, right
-
-
-def _place_rows(system: System, transposed: Array) -> None:
-    """Write all rows into the transposed system, matrix and right sides one below the other."""
-
-    def place(block: InfluenceRows) -> None:
-        for rows in system.rows(block):
-            first = 0
-            for part in rows.left:
-                transposed[first : first + len(part), rows.at] = part
-                first += len(part)
-            transposed[system.size :, rows.at] = rows.right
-
-    system.influence.each_block(system.equations.collocation, place)
-
-
-def solve_system(system: System) -> Response:
-    """Solve for loads and unit pressures; `SingularSystemError` if the equations have no unique solution."""
-    matrix, right = assemble(system)
-    keep = matrix.nbytes <= LARGEST_COPY
-    order, count = system.contact_last() if keep else (np.arange(system.size), system.size)
-    with one_thread.lifted(system.size):
-        lu = LU.of(matrix.T[order].T if keep else matrix, overwrite=True)
-    if lu.reciprocal_condition < SINGULAR:
-        raise SingularSystemError(
-            "the equations of the body have no unique solution (reciprocal condition number "
-            f"{lu.reciprocal_condition:.1e}); look for coincident edges, or for neighboring elements of very different "
-            "length"
-        )
-    left = (lambda x, weights: right @ weights - matrix @ x) if keep else partial(residual, system)
-    with one_thread.lifted(system.size):
-        return Response.of(lu, order, count, right, len(system.loadings), left)
-
-
-def residual(system: System, solution: Array, weights: Array) -> Array:
-    """B W - A x (size, w) for solutions x (size, w) and weights W (s + n, w), from rows computed anew.
-
-    No second matrix is kept for it.
-    """
-    unknowns = system.unknowns.size
-    z, s = solution[:unknowns], solution[unknowns:]
-    result = np.zeros_like(solution, order="F")
-
-    def place(block: InfluenceRows) -> None:
-        for rows in system.rows(block):
-            first, left = 0, weights.T @ rows.right
-            for part in rows.left:
-                left -= z[first : first + len(part)].T @ part
-                first += len(part)
-            result[rows.at] = left.T
-
-    if system.machine_code is None:
-        system.influence.each_block(system.equations.collocation, place)
-    else:
-        points, integrals = system.flat_points(), system.flat_integrals()
-        for first in range(0, len(points.base), POINTS_OF_RESIDUAL):
-            at, some = points.part(first, first + POINTS_OF_RESIDUAL)
-            transposed = np.zeros((system.size + len(weights), len(at)))
-            system.machine_code(transposed, some, *integrals)
-            result[at] = transposed[system.size :].T @ weights - transposed[:unknowns].T @ z
-    result[:unknowns] -= system.border @ s
-    result[unknowns:] = -system.null_vectors.T @ z
-    return result

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.arguments import FigureOption, RefineOption, Source
-from bemcontact.cli.command import CommandOutput, refuse, reported, run, write_json
+from bemcontact.cli.command import CommandOutput, modules, refuse, reported, run, write_json
 from bemcontact.cli.terminal import Report, tell
 from bemcontact.errors import ProblemError, SingularSystemError, SpecError
 
@@ -25,8 +25,9 @@ def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1)
     """
 
     def work(_: Report) -> CommandOutput:
-        from bemcontact.analysis.check import check as checked
-        from bemcontact.report import text
+        with modules():
+            from bemcontact.analysis.check import check as checked
+            from bemcontact.report.problem_text import problem_summary
 
         try:
             body = checked(source.problem(refine))
@@ -38,7 +39,7 @@ def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1)
             from bemcontact.report import figures
 
             figures.save(figures.figure_of_problem(body.problem, body.mesh), figure)
-        return CommandOutput(summary=lambda: text.problem_summary(body))
+        return CommandOutput(summary=lambda: problem_summary(body))
 
     run("checking", work, source=source, files={"--figure": figure})
 
@@ -70,8 +71,9 @@ def condense(
     """
 
     def work(_: Report) -> CommandOutput:
-        from bemcontact.analysis import solve as analysis
-        from bemcontact.report import text
+        with modules():
+            from bemcontact.analysis import solve as analysis
+            from bemcontact.report import text
 
         contact = analysis.condense(source.problem(refine))
         contact.save(out)

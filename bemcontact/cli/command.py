@@ -1,5 +1,6 @@
 """Common parts of all commands: arguments, checks of outputs, progress, results, exit status."""
 
+import gc
 import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -77,6 +78,19 @@ def _parameters_of(group: Any) -> Iterator[inspect.Parameter]:
             annotation = Annotated[read, option(group, item.name)]
         default = {} if item.default is item.default_factory else {"default": item.default}
         yield inspect.Parameter(item.name, inspect.Parameter.KEYWORD_ONLY, annotation=annotation, **default)
+
+
+@contextmanager
+def modules() -> Iterator[None]:
+    """Read the modules of a command; in the program, garbage is searched for from then on, but not among them."""
+    in_program = not gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if in_program:
+            gc.freeze()
+        gc.enable()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from bemcontact.cli.arguments import JsonOption, Source, by_option, names, option, several
-from bemcontact.cli.command import CommandOutput, run
+from bemcontact.cli.command import CommandOutput, modules, run
 from bemcontact.cli.terminal import Report
 from bemcontact.errors import OptionError
 from bemcontact.options import ComparisonOptions
@@ -51,9 +51,10 @@ def compare(
     """
 
     def work(report: Report) -> CommandOutput:
-        from bemcontact.analysis import compare as comparing
-        from bemcontact.report import text
-        from bemcontact.report.verdicts import mesh_study_shortfall
+        with modules():
+            from bemcontact.analysis import compare as comparing
+            from bemcontact.report.comparison_text import mesh_study_summary
+            from bemcontact.report.verdicts import mesh_study_verdicts, shortfall_of
 
         parts = several(refine, "--refine", "whole number", int)
         penalties = None if penalty is None else several(penalty, "--penalty", "number", float)
@@ -72,10 +73,10 @@ def compare(
 
             folder.save(study, out, source.as_run())
         return CommandOutput(
-            summary=lambda: text.mesh_study_summary(study),
+            summary=lambda: mesh_study_summary(study),
             json=study.to_json,
             holds=study.holds is not False,
-            verdict=mesh_study_shortfall(study),
+            verdict=shortfall_of(mesh_study_verdicts(study.to_dict())),
         )
 
     run("reading", work, source=source, folder=out, json_file=json_file)
@@ -86,8 +87,7 @@ def _cases(
 ) -> CommandOutput:
     """Compare formulations under all load cases."""
     from bemcontact.analysis.case_comparisons import compare_cases
-    from bemcontact.report import case_text
-    from bemcontact.report.verdicts import case_comparisons_shortfall
+    from bemcontact.report import comparison_text
 
     if len(refine) > 1:
         raise OptionError("--refine compares the meshes of one load case; name it with --case")
@@ -98,8 +98,8 @@ def _cases(
 
         folder.save_cases(comparisons, out, source.as_run())
     return CommandOutput(
-        summary=lambda: case_text.case_comparisons_summary(comparisons),
+        summary=lambda: comparison_text.case_comparisons_summary(comparisons),
         json=comparisons.to_json,
         holds=comparisons.holds is not False,
-        verdict=case_comparisons_shortfall(comparisons),
+        verdict=comparison_text.case_comparisons_shortfall(comparisons),
     )

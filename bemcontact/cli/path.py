@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.arguments import JsonOption, RefineOption, Source, by_option, read_number, with_default
-from bemcontact.cli.command import CommandOutput, run
+from bemcontact.cli.command import CommandOutput, modules, run
 from bemcontact.cli.terminal import Report
 
 
@@ -57,10 +57,12 @@ def path(
     """
 
     def work(report: Report) -> CommandOutput:
-        from bemcontact.analysis.follow import follow
-        from bemcontact.problem.key_path import parsed_path
-        from bemcontact.report import text
-        from bemcontact.report.verdicts import path_shortfall
+        with modules():
+            from bemcontact.analysis.follow import follow
+            from bemcontact.problem.key_path import parsed_path
+            from bemcontact.report.path_text import path_summary
+            from bemcontact.report.path_verdicts import path_verdicts
+            from bemcontact.report.verdicts import shortfall_of
 
         problem = source.problem(refine)
         with by_option("--vary"):
@@ -73,10 +75,10 @@ def path(
 
             folder.save_path(followed, out)
         return CommandOutput(
-            summary=lambda: text.path_summary(followed),
+            summary=lambda: path_summary(followed),
             json=followed.to_json,
             holds=followed.holds is not False,
-            verdict=path_shortfall(followed),
+            verdict=shortfall_of(path_verdicts(followed)),
         )
 
     run("following", work, source=source, folder=out, kind="path", json_file=json_file)

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.arguments import JsonOption, several
-from bemcontact.cli.command import CommandOutput, run
+from bemcontact.cli.command import CommandOutput, modules, run
 from bemcontact.cli.terminal import Report
 
 
@@ -33,8 +33,9 @@ def reproduce(
     """
 
     def work(report: Report) -> CommandOutput:
-        from bemcontact.analysis import reproduction as analysis
-        from bemcontact.report.reproduction import reproduction_sentence, reproduction_summary
+        with modules():
+            from bemcontact.analysis import reproduction as analysis
+            from bemcontact.report.reproduction import reproduction_sentence, reproduction_summary
 
         reproduction = analysis.reproduce(several(refine, "--refine", "whole number", int), report)
         if out:

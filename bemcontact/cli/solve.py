@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.arguments import FigureOption, JsonOption, RefineOption, Source, by_option
-from bemcontact.cli.command import CommandOutput, run
+from bemcontact.cli.command import CommandOutput, modules, run
 from bemcontact.cli.terminal import Report
 from bemcontact.errors import OptionError
 from bemcontact.options import SolveOptions
@@ -53,10 +53,11 @@ def solve(
     """
 
     def work(report: Report) -> CommandOutput:
-        from bemcontact.analysis import load_cases
-        from bemcontact.analysis import solve as analysis
-        from bemcontact.report import case_text, text
-        from bemcontact.report.verdicts import shortfall
+        with modules():
+            from bemcontact.analysis import load_cases
+            from bemcontact.analysis import solve as analysis
+            from bemcontact.report import text
+            from bemcontact.report.verdicts import shortfall
 
         def draw(results: analysis.Result | load_cases.CaseResults) -> None:
             if figure:
@@ -78,7 +79,7 @@ def solve(
             results = load_cases.solve_cases_with(read, problem, report)
             draw(results)
             return CommandOutput(
-                summary=lambda: case_text.cases_summary(results),
+                summary=lambda: text.cases_summary(results),
                 json=results.to_json,
                 holds=results.holds is not False,
                 verdict=shortfall(results),

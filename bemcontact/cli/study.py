@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli.arguments import JsonOption, RefineOption, Source, by_option, reader, with_default
-from bemcontact.cli.command import CommandOutput, run
+from bemcontact.cli.command import CommandOutput, modules, run
 from bemcontact.cli.terminal import Report
 from bemcontact.errors import OptionError, ProblemError
 
@@ -84,12 +84,13 @@ def study(
     """
 
     def work(report: Report) -> CommandOutput:
-        from bemcontact.report.study_page import study_shortfall, study_summary
-        from bemcontact.runs.study import study_of_plan
-        from bemcontact.studies.axes import written_axes
-        from bemcontact.studies.outputs import chosen
-        from bemcontact.studies.plan import study_plan
-        from bemcontact.studies.workers import processors
+        with modules():
+            from bemcontact.report.study_page import study_shortfall, study_summary
+            from bemcontact.runs.study import study_of_plan
+            from bemcontact.studies.axes import written_axes
+            from bemcontact.studies.outputs import chosen
+            from bemcontact.studies.plan import study_plan
+            from bemcontact.studies.workers import processors
 
         def located(error: ProblemError) -> str:
             return source.located(error) if any(issue.path for issue in error.issues) else str(error)

@@ -108,9 +108,9 @@ class CondensedContact(WithHints, MotionAlgebra):
         for name, kind in (("tools", Tools), ("cases", LoadCases), ("pinned", Pinned)):
             instance_of(getattr(self, name), kind, name, "leave it out if there is none")
         n, k = self.rigid_motions.shape
-        if not len(self.tools):
+        if not (len(self.tools) or self.tools.fit(n, k)):
             object.__setattr__(self, "tools", Tools.none(n, k))
-        if not len(self.cases):
+        if not (len(self.cases) or self.cases.fit(n, k, len(self.tools))):
             object.__setattr__(self, "cases", LoadCases.none(n, k, len(self.tools)))
         c, t = len(self.cases), len(self.tools)
         fits = self.pinned.load.shape[1] == 1 + c and len(self.pinned.tools) == 3 * t

@@ -92,6 +92,18 @@ def angle_of_round_off(points: Array, normals: Array, pressed: BoolArray) -> flo
     return COORDINATES * float(np.abs(points).max()) / lever if lever > UNSEEN * float(np.abs(at).max()) else 0.0
 
 
+def unseen_ways(changes: Array, part: float) -> Array:
+    """Orthonormal combinations (k, j) of motions that change nothing, from what each changes (n, k).
+
+    Singular values up to a part of the largest one are zeros.
+    """
+    k = changes.shape[1]
+    if not k:
+        return np.zeros((0, 0))
+    values, vectors = np.linalg.svd(np.vstack([changes, np.zeros((k, k))]), full_matrices=False)[1:]
+    return vectors[values <= part * values[0]].T
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MotionAlgebra:
     """Free rigid motions of n contact points, with the equilibrium ℓᵀp = -load.

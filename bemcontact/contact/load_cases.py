@@ -74,6 +74,11 @@ class LoadCases:
         """Return the number of cases."""
         return len(self.names)
 
+    def fit(self, points: int, motions: int, tools: int) -> bool:
+        """Whether they are those of a body with n contact points, k free motions and t tools."""
+        parts = self.displacement, self.motion_load, self.position, self.force
+        return [*map(len, parts)] == [points, motions, 3 * tools, 3 * tools]
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Tools:
@@ -121,6 +126,10 @@ class Tools:
     def __len__(self) -> int:
         """Return the number of tools."""
         return len(self.names)
+
+    def fit(self, points: int, motions: int) -> bool:
+        """Whether they are those of a body with n contact points and k free motions."""
+        return (len(self.motions), self.amplitudes.shape[1]) == (points, motions)
 
     def displacement(self, rigid_amplitudes: Array) -> Array:
         """Displacements (t, 3) of the tools: x, y [L] and rotation [rad], for amplitudes a (k,)."""

@@ -7,6 +7,7 @@ from typing import Self
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
 from bemcontact.arrays import Array, IntArray
+from bemcontact.blas_threads import one_thread
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -29,7 +30,8 @@ class LU:
         """Factorize a matrix (m, m); `overwrite` reuses the memory of one in Fortran order."""
         lange, getrf, gecon = get_lapack_funcs(("lange", "getrf", "gecon"), dtype=float)
         norm = lange("1", matrix)
-        factors, pivots, singular = getrf(matrix, overwrite_a=overwrite)
+        with one_thread.lifted(len(matrix) ** 3 / 3):
+            factors, pivots, singular = getrf(matrix, overwrite_a=overwrite)
         return cls(factors=factors, pivots=pivots, reciprocal_condition=0.0 if singular else gecon(factors, norm)[0])
 
     def solve(self, right: Array, residual: Callable[[Array], Array]) -> Array:
@@ -44,11 +46,14 @@ class LU:
     def forward(self, right: Array) -> Array:
         """L⁻¹P times right sides (m, s)."""
         (exchange,), (substitute,) = get_lapack_funcs(("laswp",), dtype=float), get_blas_funcs(("trsm",), dtype=float)
-        return substitute(1.0, self.factors, exchange(right, self.pivots), lower=True, diag=True, overwrite_b=True)
+        exchanged = exchange(right, self.pivots)
+        with one_thread.lifted(exchanged.size * len(exchanged) / 2):
+            return substitute(1.0, self.factors, exchanged, lower=True, diag=True, overwrite_b=True)
 
     def backward(self, reduced: Array, last: int | None = None) -> Array:
         """The last rows (q,) or (q, s) of U⁻¹ times reduced right sides (m,) or (m, s); all rows if None."""
         (substitute,) = get_blas_funcs(("trsm",), dtype=float)
         first = 0 if last is None else len(self.factors) - last
         own = reduced[first:] if reduced.ndim == 2 else reduced[first:, None]
-        return substitute(1.0, self.factors[first:, first:], own).reshape(-1, *reduced.shape[1:])
+        with one_thread.lifted(own.size * len(own) / 2):
+            return substitute(1.0, self.factors[first:, first:], own).reshape(-1, *reduced.shape[1:])

@@ -1,11 +1,11 @@
 """The statements of the contact problem, by name; each one takes a condensed problem and options."""
 
 from collections.abc import Mapping
+from importlib import import_module
 from typing import Protocol
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
-from bemcontact.formulations import complementarity, qp1, qp2, qp3
 from bemcontact.options import FormulationName, SolveOptions
 
 
@@ -17,9 +17,13 @@ class Formulation(Protocol):
         ...
 
 
-FORMULATIONS: Mapping[str, Formulation] = {
-    FormulationName.QP1: qp1.solve,
-    FormulationName.QP2: qp2.solve,
-    FormulationName.QP3: qp3.solve,
-    FormulationName.COMPLEMENTARITY: complementarity.solve,
-}
+def _of(name: FormulationName) -> Formulation:
+    """The formulation whose module has its name, which is imported when it first solves."""
+
+    def solve(contact: CondensedContact, options: SolveOptions) -> ContactSolution:
+        return import_module(f"{__name__}.{name}").solve(contact, options)
+
+    return solve
+
+
+FORMULATIONS: Mapping[str, Formulation] = {name: _of(name) for name in FormulationName}

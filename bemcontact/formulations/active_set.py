@@ -48,8 +48,13 @@ class ContactBlock:
     def matrix(self) -> Array:
         """The matrix, with |A| + k rows and columns."""
         A, k = self.points, self.scaled.rigid_motions.shape[1]
-        M, R, ell = self.scaled.compliance[np.ix_(A, A)], self.scaled.rigid_motions[A], self.scaled.equilibrium[A]
-        return np.block([[M, R], [ell.T, np.zeros((k, k))]])
+        matrix = np.zeros((len(A) + k, len(A) + k))
+        matrix[: len(A), : len(A)] = self.scaled.compliance[A[:, None], A]
+        matrix[: len(A), len(A) :], matrix[len(A) :, : len(A)] = (
+            self.scaled.rigid_motions[A],
+            self.scaled.equilibrium[A].T,
+        )
+        return matrix
 
     @cached_property
     def _columns(self) -> Array:

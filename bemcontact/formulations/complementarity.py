@@ -36,10 +36,11 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     `ProblemError` if another option is set.
     """
     options = options_of(FormulationName.COMPLEMENTARITY, options)
-    if note := escape_note(contact):
-        return _without_contact(contact, note)
     scaled = scale(contact)
-    carried = replace(scaled, motion_load=scaled.motion_load - loose_load(scaled))
+    loose = loose_load(scaled)
+    if _escapes(scaled, loose):
+        return _without_contact(contact, escape_words(contact, loose))
+    carried = replace(scaled, motion_load=scaled.motion_load - loose)
     search = find_state(carried, options.max_iterations)
     if search.status is Status.INFEASIBLE:
         note = "Lemke's method ended on a ray, and multipliers prove that no pressure satisfies the conditions"
@@ -91,9 +92,12 @@ def escape_note(contact: CondensedContact) -> str | None:
     """Describe the motion in which the load pulls the body off its support; None if the support carries the load."""
     scaled = scale(contact)
     motion = loose_load(scaled)
-    if np.linalg.norm(motion) <= BALANCED * np.linalg.norm(scaled.motion_load):
-        return None
-    return escape_words(contact, motion)
+    return escape_words(contact, motion) if _escapes(scaled, motion) else None
+
+
+def _escapes(scaled: ScaledContact, loose: Array) -> bool:
+    """Whether the part of the load that no pressure carries is more than round-off."""
+    return bool(np.linalg.norm(loose) > BALANCED * np.linalg.norm(scaled.motion_load))
 
 
 def escape_words(contact: CondensedContact, motion: Array) -> str:

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import scipy
-from scipy.sparse import csr_array, diags_array, vstack
 
 from bemcontact.arrays import Array
 
@@ -24,9 +23,9 @@ def infeasible_ray(data: dict[str, Any]) -> SimpleNamespace | None:
     Multipliers of other cones are zero. None if HiGHS finds nothing below zero.
     """
     zero, linear, rows = _sizes(data)
-    A, b = csr_array(data["A"])[:linear], data["b"][:linear]
+    A, b = scipy.sparse.csr_array(data["A"])[:linear], data["b"][:linear]
     bounds = np.column_stack([np.where(np.arange(linear) < zero, -1.0, 0.0), np.ones(linear)])
-    z = _least(b, _of_size_one(csr_array(A.T)), csr_array((0, linear)), bounds)
+    z = _least(b, _of_size_one(scipy.sparse.csr_array(A.T)), scipy.sparse.csr_array((0, linear)), bounds)
     whole = None if z is None else np.append(z, np.zeros(rows - linear))
     return None if whole is None else _ray("PrimalInfeasible", np.zeros(len(data["c"])), whole, np.zeros(rows))
 
@@ -37,10 +36,10 @@ def unbounded_ray(data: dict[str, Any]) -> SimpleNamespace | None:
     None if HiGHS finds nothing below zero.
     """
     zero, linear, rows = _sizes(data)
-    A = csr_array(data["A"])
-    P = csr_array(data["P"]) if "P" in data else csr_array((0, len(data["c"])))
+    A = scipy.sparse.csr_array(data["A"])
+    P = scipy.sparse.csr_array(data["P"]) if "P" in data else scipy.sparse.csr_array((0, len(data["c"])))
     limits = np.arange(zero, linear)
-    still = vstack([_of_size_one(P), A[np.delete(np.arange(rows), limits)]], format="csr")
+    still = scipy.sparse.vstack([_of_size_one(P), A[np.delete(np.arange(rows), limits)]], format="csr")
     x = _least(data["c"], still, A[limits], (-1.0, 1.0))
     if x is None:
         return None
@@ -64,10 +63,10 @@ def _ray(status: str, x: Array, z: Array, s: Array) -> SimpleNamespace:
     return SimpleNamespace(status=status, x=x, z=z, s=s, obj_val=np.nan, solve_time=0.0, iterations=0)
 
 
-def _of_size_one(matrix: csr_array) -> csr_array:
+def _of_size_one(matrix: "scipy.sparse.csr_array") -> "scipy.sparse.csr_array":
     """Rows divided by their largest entries: HiGHS takes small numbers for zeros."""
     size = abs(matrix).max(axis=1).toarray().ravel()
-    return csr_array(diags_array(1.0 / np.where(size > 0.0, size, 1.0)) @ matrix)
+    return scipy.sparse.csr_array(scipy.sparse.diags_array(1.0 / np.where(size > 0.0, size, 1.0)) @ matrix)
 
 
 def _sizes(data: dict[str, Any]) -> tuple[int, int, int]:

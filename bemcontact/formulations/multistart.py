@@ -10,7 +10,8 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts, SearchEnd
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.formulations import FORMULATIONS
-from bemcontact.formulations.search import contact_residual, draw_starts
+from bemcontact.formulations.scaling import contact_residual
+from bemcontact.formulations.starts import draw_starts
 from bemcontact.options import SolveOptions
 
 SAME = 1e-6

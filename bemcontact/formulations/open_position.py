@@ -9,10 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 import scipy
-from scipy.linalg import null_space
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.formulations.local_solver.factorizations import unit_rows
 from bemcontact.formulations.scaling import ACCEPTED, ScaledContact, scale, scaled_point, unscaled
@@ -61,8 +61,7 @@ def with_chosen_position(
 def _unseen(scaled: ScaledContact, held: BoolArray) -> Array:
     """Basis (k, j) of the motions that no held point (n,) sees."""
     pressed = scaled.rigid_motions[held]
-    scale = np.sqrt(len(scaled.weights))
-    return np.asarray(null_space(np.vstack([pressed, np.zeros_like(pressed[:1])]) / scale, rcond=UNSEEN), float)
+    return unseen_ways(pressed, UNSEEN)
 
 
 def _limits(scaled: ScaledContact, held: BoolArray, gap: Array, motions: Array) -> tuple[Array, Array]:
@@ -125,7 +124,7 @@ def farthest(values: Array, rates: Array, seen: Array, most: float) -> tuple[flo
     if locking.any():
         x = np.asarray(optimum.x, float)
         x += np.linalg.lstsq(rows[locking], -values[locking] - rows[locking] @ x, rcond=None)[0]
-        free = null_space(rows[locking], rcond=UNSEEN)
+        free = unseen_ways(rows[locking], UNSEEN)
     others = ~locking & (np.abs(rows @ free).max(axis=1, initial=0.0) > UNSEEN)
     x += free @ _least((rows @ free)[others], -(values + rows @ x)[others])
     return float(x[0]), x[1:]

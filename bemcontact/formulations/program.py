@@ -12,7 +12,9 @@ from scipy.linalg import block_diag
 
 from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.formulations.local_solver import QPOptions, QPResult, inertia, minimize_qp
+from bemcontact.formulations.local_solver.factorizations import inertia
+from bemcontact.formulations.local_solver.minimize import minimize_qp
+from bemcontact.formulations.local_solver.result import QPOptions, QPResult
 from bemcontact.formulations.scaling import ScaledContact, scale
 from bemcontact.options import Rows
 

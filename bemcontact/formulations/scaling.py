@@ -12,6 +12,7 @@ from bemcontact.arrays import Array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales, MotionAlgebra
 from bemcontact.contact.load_cases import Change
+from bemcontact.contact.solution import ContactSolution
 from bemcontact.options import Weights
 
 ACCEPTED = 1e-11
@@ -91,3 +92,12 @@ def unscaled(contact: CondensedContact, pressure: Array, amplitudes: Array) -> t
 def motion_sizes(contact: CondensedContact) -> Array:
     """Largest normal component of each free motion, (k,)."""
     return np.abs(contact.rigid_motions).max(axis=0, initial=0.0)
+
+
+def contact_residual(contact: CondensedContact, solution: ContactSolution) -> float:
+    """Largest of |min(p/T, δ/U)|, of (12) over U and of |ℓᵀp + load| over T Σ|ℓ|, over the size of the numbers."""
+    scaled = scale(contact)
+    p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
+    residual = solution.displacement - unscaled(contact, p, a)[1]
+    size = 1.0 + float(np.abs(p).max(initial=0.0) + np.abs(a).sum())
+    return max(scaled.residual(p, a), float(np.abs(residual).max()) / contact.scales.displacement / size)

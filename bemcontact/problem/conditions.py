@@ -103,6 +103,11 @@ class Condition(SpecModel):
             raise invalid("the condition is empty; give displacement, traction or pressure, or leave the edge out")
         return self
 
+    @property
+    def presses(self) -> bool:
+        """Whether it prescribes pressure or traction."""
+        return self.pressure is not None or bool(self.traction.given)
+
 
 def _not_tiny(vector: Point) -> Point:
     """Refuse vectors other than 0 that are too short to compute with."""

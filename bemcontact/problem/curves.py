@@ -234,17 +234,20 @@ class Edge:
 
     def normals(self, fractions: Array) -> Array:
         """Outward unit normals (k, 2) at fractions (k,) of the arc length."""
-        directions = self.directions(fractions)
-        return np.column_stack([directions[:, 1], -directions[:, 0]])
+        return self.directions(fractions)[:, ::-1] * (1.0, -1.0)
 
     @cached_property
     def _coarse_breakpoints(self) -> Array:
         assert self.elements is not None, f"no mesh was found for edge '{self.name}' yet"
-        return graded_ends(self.elements, self.ratio, self.towards, self.ends_at)
+        ends = graded_ends(self.elements, self.ratio, self.towards, self.ends_at)
+        ends.setflags(write=False)
+        return ends
 
     def breakpoints(self, refine: int = 1) -> Array:
         """Fractions (elements · refine + 1,) of the element ends, with each element cut into `refine` equal parts."""
         coarse = self._coarse_breakpoints
+        if refine == 1:
+            return coarse
         parts = np.arange(refine) / refine
         fine = coarse[:-1, None] + np.diff(coarse)[:, None] * parts
         return np.append(fine.ravel(), 1.0)

@@ -1,14 +1,11 @@
 """Numbers, units and parts of a problem in words, for tables, pictures and pages."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.assessment.contender import Contender
-from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.solution import LocalSearch
 from bemcontact.problem import (
     Circle,
     Condition,
@@ -55,11 +52,6 @@ def vector(components: tuple[float, float], unit: str = "", *, scale: float = 0.
 def with_unit(text: str, unit: str) -> str:
     """Put the unit, if there is one, behind a number that is not zero."""
     return f"{text} {unit}" if unit and text != "0" else text
-
-
-def units_of(contact: CondensedContact) -> Units:
-    """Read the labels of the units back from a condensed problem."""
-    return Units(length=contact.units.get("length", ""), force=contact.units.get("force", ""))
 
 
 def field_on(field: Field, edge: Edge, unit: str = "") -> str:
@@ -171,58 +163,6 @@ def plural(noun: str, count: int) -> str:
     return noun if count == 1 else f"{noun}s"
 
 
-def search_in_words(search: LocalSearch, contact: CondensedContact) -> str:
-    """Start, iterations and curvature of the search of a local solver."""
-    first, second, changes = search.phase_one_iterations, search.phase_two_iterations, search.working_set_changes
-    sentences = [
-        f"from the {search.start}: {first + second} {plural('iteration', first + second)} ({first} to a feasible "
-        f"point, {second} from there)",
-        f"{changes} {plural('change', changes)} of the working set",
-        f"eigenvalues of the whole Hessian: {_inertia(search.inertia)}; of the reduced Hessian: "
-        f"{_inertia(search.reduced_inertia_start)} at the feasible point, {_inertia(search.reduced_inertia_end)} at "
-        "the end",
-    ]
-    if search.penalty is not None:
-        words = penalty_in_words(search.penalty.to_dict(), units_of(contact))
-        kept = " where equilibrium is kept" if contact.free_motions and search.penalty.convexity_limit != 0 else ""
-        sentences.append(f"penalty {words.value}, convex{kept} {words.limit}{words.raw_limit}")
-    return "; ".join(sentences)
-
-
-def _inertia(inertia: tuple[int, int, int]) -> str:
-    """Write how many eigenvalues are positive, zero and negative."""
-    kinds = zip(inertia, ("positive", "zero", "negative"), strict=True)
-    return ", ".join(f"{count} {kind}" for count, kind in kinds if count) or "none"
-
-
-class PenaltyWords(NamedTuple):
-    """A penalty μ of QP2, and the largest one for which QP2 is convex, both also in the units of the problem."""
-
-    value: str
-    limit: str
-    """``for every penalty``, ``for no penalty``, or up to which one."""
-    raw_limit: str
-    """The last one in the units of the problem."""
-
-
-def penalty_in_words(penalty: JsonObject, units: Units) -> PenaltyWords:
-    """Write the record of a penalty."""
-    labels = {"p/L²": f"{units.force}/{units.length}⁴", "1/p": f"{units.length}²/{units.force}"}
-    unit = labels[penalty["dimension"]] if units.force and units.length else "in the units of the problem"
-    limit, raw = penalty["convexity_limit"], penalty["convexity_limit_raw"]
-    value = f"{number(penalty['value'])} ({number(penalty['raw'])} {unit})"
-    if not limit:
-        return PenaltyWords(value, "for every penalty" if limit is None else "for no penalty", "")
-    return PenaltyWords(value, f"up to {number(limit)}", f" ({number(raw)} {unit})")
-
-
-def held_by(contact: CondensedContact) -> str:
-    """Rigid motions that are held by contact."""
-    if not contact.free_motions:
-        return "all held by conditions"
-    return f"held by contact: {', '.join(contact.motion_names)}"
-
-
 def seconds_in_words(seconds: float) -> str:
     """Write seconds with two figures, or all before the point."""
     return f"{seconds:.2g} s" if seconds < 10 else f"{seconds:.0f} s"
@@ -231,15 +171,6 @@ def seconds_in_words(seconds: float) -> str:
 def sentence_case(text: str) -> str:
     """The text with a capital first letter."""
     return text[:1].upper() + text[1:]
-
-
-def convexity_in_words(contender: Contender) -> str:
-    """Whether a program is convex subject to its equations and equilibrium, and up to which penalty."""
-    search = None if contender.solution is None else contender.solution.search
-    convex = "yes" if contender.convex else "no"
-    if search is None or search.penalty is None:
-        return convex
-    return f"{convex}, {penalty_in_words(search.penalty.to_dict(), Units()).limit}"
 
 
 def reference_in_words(reference: Reference) -> str:

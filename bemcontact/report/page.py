@@ -14,6 +14,7 @@ from bemcontact.assessment.contender import OUTCOMES, Outcome
 from bemcontact.errors import escaped_lines
 from bemcontact.problem import Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, infinite_peaks, with_bar
+from bemcontact.report.contact_words import PenaltyWords, penalty_in_words
 from bemcontact.report.facts import (
     contact_intervals,
     facts,
@@ -24,17 +25,7 @@ from bemcontact.report.facts import (
     small,
     total_force,
 )
-from bemcontact.report.formatting import (
-    JsonObject,
-    PenaltyWords,
-    number,
-    penalty_in_words,
-    plural,
-    seconds_in_words,
-    sentence_case,
-    vector,
-    with_unit,
-)
+from bemcontact.report.formatting import JsonObject, number, plural, seconds_in_words, sentence_case, vector, with_unit
 from bemcontact.report.verdicts import mesh_study_verdicts, overall
 
 MANY = 5

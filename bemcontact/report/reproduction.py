@@ -13,7 +13,8 @@ from bemcontact.report.bars import NOTHING
 from bemcontact.report.facts import QUALITIES, peak_of, score_verdict, scores_in_words, small
 from bemcontact.report.formatting import JsonObject, number, seconds_in_words, sentence_case, with_unit
 from bemcontact.report.page import formulation_name, picture, template
-from bemcontact.report.text import add_verdict, list_of_facts, table_of
+from bemcontact.report.tables import list_of_facts, table_of
+from bemcontact.report.text import add_verdict
 from bemcontact.report.verdicts import Verdict, mesh_verdict
 
 FORMULATIONS = ("qp1", "qp2", "qp3", "complementarity")

@@ -9,8 +9,9 @@ from bemcontact.analysis.result import Result
 from bemcontact.assessment.contender import OUTCOMES
 from bemcontact.problem import Problem, Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, bars_of, mesh_in_short, with_bar
+from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import contact_intervals, coordinate_size, facts, peak_of, peak_place, small, total_force
-from bemcontact.report.formatting import JsonObject, sentence_case, surface_in_words, units_of, vector, with_unit
+from bemcontact.report.formatting import JsonObject, sentence_case, surface_in_words, vector, with_unit
 from bemcontact.report.page import picture, template
 from bemcontact.report.verdicts import case_verdicts, overall, result_verdicts
 from bemcontact.report.zones import by_case, zone_rows

@@ -12,7 +12,8 @@ from bemcontact.problem.units import Units
 from bemcontact.report.bars import NOTHING, error_percent, with_error
 from bemcontact.report.formatting import number, plural, seconds_in_words, sentence_case, with_unit
 from bemcontact.report.page import Picture, picture, template
-from bemcontact.report.text import add, add_verdict, list_of_facts, table_of
+from bemcontact.report.tables import add, list_of_facts, table_of
+from bemcontact.report.text import add_verdict
 from bemcontact.report.verdicts import Verdict
 from bemcontact.studies.outputs import DIMENSIONS, Reading
 from bemcontact.studies.rows import MemberRow, MemberStatus

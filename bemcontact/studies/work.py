@@ -7,8 +7,11 @@ from dataclasses import dataclass, field
 
 from threadpoolctl import threadpool_limits
 
-from bemcontact.adaptivity.mesh_search import cut
-from bemcontact.analysis.solve import solve_with
+from bemcontact import blas_threads
+from bemcontact.adaptivity.adapt import stated
+from bemcontact.adaptivity.mesh_sizes import cut
+from bemcontact.analysis.result import Result
+from bemcontact.analysis.solve import Prepared, Stopwatch, ensure_acting, solve_prepared, solve_with
 from bemcontact.bem.body import Body, body_of
 from bemcontact.bem.condense import Condensation, CondensedTogether, Condenser, condense_together, matrix_of
 from bemcontact.errors import BemContactError, ProblemError
@@ -52,13 +55,25 @@ def rows_of_task(plan: StudyPlan, task: Task) -> Iterator[MemberRow]:
             yield failed_row(number, values, str(member))
             continue
         try:
-            yield row_of(number, values, solve_with(SolveOptions(), member, condenser=shared.condenser(number)))
+            yield row_of(number, values, _solved(member, shared.condenser(number)))
         except MemoryError:
             yield failed_row(number, values, "there is not enough memory; take fewer elements or fewer workers")
         except BemContactError as error:
             yield failed_row(number, values, str(error))
         except Exception as error:  # one member must not end the study
             yield failed_row(number, values, f"an error of the program, please report it: {error!r}")
+
+
+@blas_threads.one_thread
+def _solved(member: Problem, condenser: Condenser) -> Result:
+    """Solve a member on the mesh that it states, or on one that is found."""
+    if member.adapts:
+        return solve_with(SolveOptions(), member)
+    ensure_acting(member)
+    watch = Stopwatch()
+    with watch.stage("mesh"):
+        on_mesh = stated(member.without_joints(), condenser=condenser)
+    return solve_prepared(SolveOptions(), Prepared.on_mesh(on_mesh), watch)
 
 
 def _member(plan: StudyPlan, number: int) -> Problem | ProblemError:

@@ -26,10 +26,11 @@ from adaptive_problems import (
 
 from bemcontact import solve
 from bemcontact.adaptivity import adapt
-from bemcontact.adaptivity.adapt import Meshed, first_mesh, meshed
+from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.coarse_mesh import CoarseMesh
 from bemcontact.adaptivity.error_bars import error_bars, pressure_change
 from bemcontact.adaptivity.fields import MeshDifference, norm_squared, penetrations, solved
+from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations.active_set import first_active_set, primal_dual

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from adaptive_problems import block_on_flat_floor, half_disk
 
-from bemcontact.adaptivity.adapt import first_mesh
 from bemcontact.adaptivity.fields import MeshDifference, halves, norm_squared, penetrations, solved
+from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.problem import Problem
 
 

@@ -5,8 +5,8 @@ from math import pi, radians, sqrt
 import numpy as np
 import pytest
 
-from bemcontact.adaptivity.adapt import first_mesh
 from bemcontact.adaptivity.first_sizes import outline, surface_sizes
+from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.adaptivity.sizes import GROWTH
 from bemcontact.problem import Problem
 from bemcontact.problem.nearest_places import surface_corners

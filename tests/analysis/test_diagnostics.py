@@ -20,8 +20,8 @@ from bemcontact.analysis.solve import condense, solve
 from bemcontact.errors import ProblemError
 from bemcontact.problem import Problem
 from bemcontact.problem.surface_lines import Spline
+from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import facts
-from bemcontact.report.formatting import units_of
 
 FEW, LONG = "pressure acts on", "pressure acts at"
 FOLDER = Path(__file__).parents[2] / "models" / "gallery"

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from bemcontact import follow, solve, solve_cases
 from bemcontact.analysis.compare import mesh_study
-from bemcontact.assessment.penetration import TOLERATED, Misfit
+from bemcontact.assessment.penetration import ROUND_OFF, TOLERATED, Misfit
+from bemcontact.bem.body import body_of
 from bemcontact.bem.surface_gaps import FLUSH, NODES, surface_gaps
 from bemcontact.options import ComparisonOptions
 from bemcontact.problem import Problem
@@ -111,7 +112,7 @@ def test_a_bump_between_two_nodes_is_found(kind):
     if kind == "polyline":
         assert result.solution.pressure[result.contact.zone == 0] == pytest.approx(5.0, rel=1e-9)
         away = bulge(5.0) * 5.6 / SIDE
-        assert (0.1 - away / 4) * np.cos(np.arctan(1 / 4)) <= result.penetration.depth <= 0.1
+        assert (0.1 - away / 4) * np.cos(np.arctan(1 / 4)) <= result.penetration.depth <= 0.1 * (1 + ROUND_OFF)
     beside = problem.with_value("boundary.outer.bottom.ends_at", [0.52, 0.56, 0.6])
     seen, coarser = solve(beside.refined(8)), solve(beside.refined(2))
     assert seen.penetration is not None
@@ -475,8 +476,8 @@ def test_nodes_have_the_faces_of_contact_points(shift, power):
     assert result.certified
     assert result.problem is not None
     assert result.boundary is not None
-    gaps = surface_gaps(result.problem, result.boundary, result.contact, result.solution)
-    seen = gaps.linear("step", np.flatnonzero(gaps.paired("step")))
+    gaps = surface_gaps(body_of(result.problem), result.boundary, result.contact, result.solution)
+    seen = gaps.linear("step", np.flatnonzero(gaps.paired["step"]))
     delta = result.contact.initial_gap + result.solution.displacement
     for normals, gap in zip(seen.normals[:, NODES].reshape(-1, 2), seen.gap[:, NODES].ravel(), strict=True):
         alike = (np.hypot(*(result.contact.normals - normals).T) < 1e-9) & (abs(delta - gap) < 1e-9)

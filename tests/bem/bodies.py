@@ -8,7 +8,8 @@ from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.loading import Loading, particular_solution
 from bemcontact.bem.mesh import BoundaryValues, Mesh, connected
 from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
-from bemcontact.bem.system import System, solve_system
+from bemcontact.bem.solution import solve_system
+from bemcontact.bem.system import System
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.material import Material
 

@@ -13,7 +13,8 @@ from bemcontact.bem import system as system_module
 from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import condense
 from bemcontact.bem.rigid_motions import free_rigid_motions
-from bemcontact.bem.system import BY_NUMBA, WORTH_COMPILING, System, assemble, machine_code, residual
+from bemcontact.bem.solution import assemble, residual
+from bemcontact.bem.system import BY_NUMBA, WORTH_COMPILING, System, machine_code
 from bemcontact.problem.material import Material
 
 MATERIAL = Material(young_modulus=1000, poisson_ratio=0.3)
@@ -123,7 +124,7 @@ def test_blocks_of_all_sizes_agree(size, monkeypatch):
 
 @pytest.mark.parametrize("name", ["slit_closure", "gallery/body_between_two_tools", "gallery/flat_punch"])
 def test_residual_of_rows_computed_anew_is_that_of_the_matrix(name, monkeypatch):
-    monkeypatch.setattr(system_module, "POINTS_OF_RESIDUAL", 37)
+    monkeypatch.setattr("bemcontact.bem.solution.POINTS_OF_RESIDUAL", 37)
     random = np.random.default_rng(1)
     for system in both_ways(of_model(name)):
         A, b = assemble(system)

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from bemcontact import solve
 from bemcontact.bem.body import body_of
-from bemcontact.bem.contact_points import element_lengths
 from bemcontact.problem import Polyline, Problem
 
 PRESSURE = 3.0
@@ -172,7 +171,7 @@ def test_element_lengths_are_arc_lengths():
     """A circle of 64 elements: the parabola is shorter than the arc by less than (angle)^4/480, relative."""
     mesh = mesh_of([("c", arc((0, 0), 2, 0, 360), even(64))])
     exact = 2 * np.pi / 32
-    assert abs(element_lengths(mesh) / exact - 1).max() < (2 * np.pi / 64) ** 4 / 480
+    assert abs(mesh.lengths / exact - 1).max() < (2 * np.pi / 64) ** 4 / 480
 
 
 def rounded(turn, cut, edges, load):

@@ -65,11 +65,11 @@ def computed(nodes: np.ndarray, z: complex) -> np.ndarray:
     root = kernels.nearest_root(tau)
     tier = int(reference_element.tier(reference_element.bernstein_parameter(root.r))[0])
     if tier == len(reference_element.ORDERS):
-        result = kernels.components(kernels.near_singular(tau, root), factor)
+        result = kernels.components(kernels.with_root_split_off(kernels.beside_element(tau, root)), factor)
     else:
         rule = kernels.gauss_rule(int(reference_element.ORDERS[tier]), factor)
-        integrands = kernels.numerators((tau @ rule.shapes).T, (nodes[None] @ rule.derivatives).T)
-        result = kernels.regular(integrands, rule, factor, with_U=True)
+        integrands = kernels.numerators(np.stack([tau.real.T, tau.imag.T], axis=1), rule)
+        result = kernels.regular(integrands, rule, with_U=True)
     return np.concatenate([result.T[..., 0], result.U[..., 0]])
 
 
@@ -96,7 +96,8 @@ def test_point_on_an_element_is_the_limit_from_outside(element, local):
     """The integrals at distance d to the right differ by O(d ln d): 1e-9 away they agree to 1e-7."""
     nodes = ELEMENTS[element]
     position, slope = at(nodes, local)
-    on = kernels.components(kernels.singular(nodes[None], np.array([local])), kernels.factors(0.3))
+    pair = kernels.on_element(nodes[None], np.array([local]))
+    on = kernels.components(kernels.with_root_split_off(pair), kernels.factors(0.3))
     beside = computed(nodes, position - 1e-9j * slope / abs(slope))
     assert abs(np.concatenate([on.T[..., 0], on.U[..., 0]]) - beside).max() < 1e-7
 

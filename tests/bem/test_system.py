@@ -7,9 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bemcontact.analysis.solve import solve as solve_problem
-from bemcontact.bem import system
 from bemcontact.bem.rigid_motions import RigidMotions
-from bemcontact.bem.system import solve_system
+from bemcontact.bem.solution import solve_system
 from bemcontact.problem import Problem
 from bemcontact.problem.material import Material
 
@@ -128,19 +127,6 @@ def test_kirsch_hole(state):
         exact, _ = of_potentials(complex_points(mesh.nodes), kirsch, material)
         errors.append(abs(u - exact).max() / abs(exact).max())
     assert order(errors) >= 3.8, errors
-
-
-@pytest.mark.parametrize("limit", [0.0, system.LARGEST_COPY])
-def test_refinement_leaves_rounding_only(limit: float, monkeypatch: pytest.MonkeyPatch):
-    """Of a matrix that is kept, and of one whose rows are computed anew: A x = b to the rounding of its products."""
-    monkeypatch.setattr(system, "LARGEST_COPY", limit)
-    mesh = mesh_of([("hole", arc((0, 0), 1, 360, 0), even(16))])
-    values = values_of(mesh, {}, lambda x: 0 * x, lambda x, n: -n * [1, 0])
-    none = RigidMotions(coefficients=np.zeros((0, 3)), center=mesh.center, radius=1)
-    of_hole = system_of(mesh, Material(young_modulus=1000, poisson_ratio=0.3), values, none)
-    A, b = system.assemble(of_hole)
-    x = solve_system(of_hole).combined(np.ones(1))[:, None]
-    assert (abs(b - A @ x) <= 4 * len(A) * np.finfo(float).eps * (abs(A) @ abs(x) + abs(b))).all()
 
 
 def test_cubic_field_in_a_disc():

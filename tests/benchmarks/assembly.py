@@ -7,21 +7,19 @@ The bodies are discs on a plane, with a tenth of the elements in the contact zon
 
 import dataclasses
 import sys
-import time
 import tracemalloc
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf
+from timing import best_of
 
 from bemcontact.bem.body import body_of
-from bemcontact.bem.system import System, assemble, machine_code
+from bemcontact.bem.solution import assemble
+from bemcontact.bem.system import System, machine_code
 from bemcontact.problem.problem import Problem
 
 Array = NDArray[np.float64]
-
-REPEATS = 3
 
 
 def half_disc(degrees_of_freedom: int) -> Problem:
@@ -58,16 +56,6 @@ def on_a_plane(name: str, edges: list, **actions: dict) -> Problem:
         contact_zones={"foot": {"edges": ["foot"], "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}},
         **actions,
     )
-
-
-def best_of(action: Callable[[], object]) -> float:
-    """Shortest of a few runs, in seconds."""
-    seconds = []
-    for _ in range(REPEATS):
-        begin = time.perf_counter()
-        action()
-        seconds.append(time.perf_counter() - begin)
-    return min(seconds)
 
 
 def system_of(problem: Problem) -> System:

@@ -37,7 +37,7 @@ from rich.table import Table
 from bemcontact import CondensedContact, ContactSolution, Equilibrium, Status, minimize_qp
 from bemcontact.formulations import FORMULATIONS, complementarity
 from bemcontact.formulations.scaling import scale
-from bemcontact.formulations.search import draw_starts
+from bemcontact.formulations.starts import draw_starts
 from bemcontact.options import SolveOptions
 
 MODULI = (1e3, 2e6, 2e11)

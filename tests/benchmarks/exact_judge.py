@@ -9,7 +9,7 @@ from integer_program import Array, IntegerProgram, Units
 from numpy.typing import NDArray
 from scipy.optimize import linprog, nnls
 
-from bemcontact.formulations.local_solver import QPResult, QPStatus
+from bemcontact.formulations.local_solver.result import QPResult, QPStatus
 
 CLEAR = 1e-6
 """A residual above this is no rounding: the numbers of the programs are whole and small."""

@@ -53,7 +53,25 @@ def graded(*pieces: tuple[float, float, int, float], parts: int = 1) -> Array:
 
 def mapped(s: Array, t: Array, place: Place) -> MeshTri2:
     """Quadratic triangles on a grid of two parameters, each node at its place (x, y)."""
-    flat = MeshTri.init_tensor(s, t)
+    return curved(MeshTri.init_tensor(s, t), place)
+
+
+def locally_refined(s: Array, t: Array, place: Place, length: Field) -> MeshTri2:
+    """Quadratic triangles whose sides are no longer than a length(x, y) wanted around their middle.
+
+    The triangles of a coarse grid of two parameters are bisected, and their neighbors with them.
+    """
+    flat, marked = MeshTri.init_tensor(s, t), np.zeros(1)
+    while len(marked):
+        ends = np.array(place(*flat.p))[:, flat.facets]
+        too_long = np.hypot(*(ends[:, 0] - ends[:, 1])) > length(*ends.mean(axis=1))
+        marked = np.flatnonzero(too_long[flat.t2f].any(axis=0))
+        flat = flat.refined(marked) if len(marked) else flat
+    return curved(flat, place)
+
+
+def curved(flat: MeshTri, place: Place) -> MeshTri2:
+    """Quadratic triangles with each node of a mesh of two parameters at its place (x, y)."""
     middles = flat.p[:, flat.facets].mean(axis=1)
     return MeshTri2(np.array(place(*np.hstack([flat.p, middles]))), flat.t)
 
@@ -68,17 +86,19 @@ class ElasticBody:
     young_modulus : [p]
     poisson_ratio
     held : (level, axis): displacement along the axis is zero on the nodes where level(x, y) = 0
+    order : of the quadrature
     """
 
     mesh: MeshTri2
     young_modulus: float
     poisson_ratio: float
     held: tuple[tuple[Field, int], ...] = ()
+    order: int = ORDER
 
     @cached_property
     def basis(self) -> Basis:
         """The space of the displacement."""
-        return Basis(self.mesh, ElementVector(ElementTriP2()), intorder=ORDER)
+        return Basis(self.mesh, ElementVector(ElementTriP2()), intorder=self.order)
 
     @cached_property
     def stiffness(self) -> sparse.csr_matrix:

@@ -21,8 +21,10 @@ from qp_instance import Instance, contact_instances, half_plane, qp1, qp2, read_
 from rich.console import Console
 from rich.table import Table
 from scipy.linalg import qr
+from timing import best_of
 
-from bemcontact.formulations.local_solver import QPResult, QPStatus, minimize_qp
+from bemcontact.formulations.local_solver.minimize import minimize_qp
+from bemcontact.formulations.local_solver.result import QPResult, QPStatus
 
 RIGHT = 1e-6
 """Largest error of u_n and of p, each over its own largest entry, of a contact solution that is right."""
@@ -161,16 +163,6 @@ def shortfalls(done: list[Trial]) -> list[str]:
     ]
 
 
-def best_of_three(action: Callable[[], object]) -> float:
-    """Shortest of three runs, in seconds."""
-    seconds = []
-    for _ in range(3):
-        begin = time.perf_counter()
-        action()
-        seconds.append(time.perf_counter() - begin)
-    return min(seconds)
-
-
 def growth(sizes: list[int]) -> Table:
     """Time per iteration on QP1 and QP2 of n contact nodes, over matrix operations with as many rows as unknowns."""
     table = Table(title="time per iteration; matrix operations of order 2n, the number of unknowns")
@@ -193,7 +185,7 @@ def _add_growth(table: Table, instance: Instance, before: tuple[int, float] | No
     each = seconds / max(1, result.iterations)
     matrix = np.random.default_rng(0).standard_normal(instance.H.shape)
     operations = (lambda: matrix @ matrix[0], lambda: matrix @ matrix, lambda: qr(matrix))
-    ratios = [f"{each / best_of_three(operation):.3g}" for operation in operations]
+    ratios = [f"{each / best_of(operation):.3g}" for operation in operations]
     order = f"{np.log(each / before[1]) / np.log(len(matrix) / before[0]):.2f}" if before else ""
     table.add_row(
         instance.name, str(len(matrix)), str(result.iterations), f"{seconds:.3f}", f"{1e3 * each:.3f}", *ratios, order

@@ -27,7 +27,8 @@ from integer_program import (
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver import QPResult, QPStatus, minimize_qp
+from bemcontact.formulations.local_solver.minimize import minimize_qp
+from bemcontact.formulations.local_solver.result import QPResult, QPStatus
 
 Sides = NDArray[np.int64]
 MISSING = (QPStatus.NUMERICAL_FAILURE, QPStatus.UNDECIDED, QPStatus.ITERATION_LIMIT)

@@ -53,7 +53,7 @@ class Answer:
     x : (n,) or None
     claim : Claim
     says : the solver's own words
-    seconds : of one whole call, its input converted and its output read
+    seconds : CPU time of one whole call, its input converted and its output read; wall time at the limit
     """
 
     x: Array | None
@@ -212,9 +212,9 @@ def _work(answers: Queue, peer: Peer, instance: Instance) -> None:
 def _timed(peer: Peer, instance: Instance) -> Iterator[Answer]:
     """One run, and a few more if it was quick."""
     for _ in range(REPEATS):
-        begin = time.perf_counter()
+        begin = time.process_time()
         answer = peer.solve(instance)
-        seconds = time.perf_counter() - begin
+        seconds = time.process_time() - begin
         yield replace(answer, seconds=seconds)
         if seconds > QUICK:
             return

@@ -3,7 +3,7 @@
 import pytest
 from adaptive_problems import CASES
 
-from bemcontact.adaptivity.adapt import first_mesh
+from bemcontact.adaptivity.mesh_sizes import first_mesh
 
 
 @pytest.mark.parametrize("name", CASES)

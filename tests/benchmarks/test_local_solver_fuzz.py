@@ -19,7 +19,8 @@ from integer_program import (
 )
 from local_solver_fuzz import case, outcomes, solved
 
-from bemcontact.formulations.local_solver import QPResult, QPStatus, minimize_qp
+from bemcontact.formulations.local_solver.minimize import minimize_qp
+from bemcontact.formulations.local_solver.result import QPResult, QPStatus
 
 INF = np.inf
 BAD = ("judge", "numerical", "restart")

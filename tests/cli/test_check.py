@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from command_line import BLOCK, PRESS, assert_refused, run
+from command_line import BLOCK, PRESS, assert_refused, in_a_process, run
 
 import bemcontact
 from bemcontact.analysis import solve as analysis
@@ -44,6 +44,19 @@ def test_check_prints_the_facts(block: Path):
     assert re.search(r"Degrees of freedom +52\b", answer.stdout)
     assert "(0, -120) N/mm" in answer.stdout  # 3 N/mm² down on 40 mm
     assert max(map(len, answer.stdout.splitlines())) <= 100
+
+
+@pytest.mark.parametrize("elements", ["4", "null"])
+def test_check_starts_without_solvers(block: Path, elements: str):
+    """It meshes the body and balances its loads, with NumPy alone for a body that is free in one way."""
+    scipy = tuple(f"scipy.{name}" for name in ("linalg", "optimize", "sparse", "special", "interpolate"))
+    rooms = ("formulations", "assessment", "parametric", "modelling", "reference", "studies", "serialization")
+    others = ("bem.system", "bem.condense", "analysis.solve", "contact.condensed_contact")
+    slow = (*scipy, "cvxpy", "matplotlib", "threadpoolctl", *(f"bemcontact.{name}" for name in (*rooms, *others)))
+    code = f"print([m for m in {slow} if m in sys.modules], file=sys.stderr)"
+    changes = f"boundary.outer[0].elements={elements}", "accuracy=0.01"
+    answer = in_a_process("check", block, *(part for change in changes for part in ("--set", change)), code=code)
+    assert (answer.returncode, answer.stderr) == (0, "[]\n")
 
 
 def test_condense_writes_what_solve_reads(block: Path, tmp_path: Path):

@@ -1,5 +1,6 @@
 """Common parts of all commands: refusals, outputs, interrupts, exit statuses."""
 
+import gc
 import os
 import re
 from collections.abc import Callable, Iterator
@@ -11,7 +12,25 @@ from command_line import BLOCK, assert_refused, run
 
 import bemcontact
 from bemcontact.analysis import solve as analysis
+from bemcontact.cli.command import modules
 from bemcontact.errors import NotConvexError, SingularSystemError
+
+
+@pytest.mark.parametrize("in_program", [True, False])
+def test_a_command_works_with_searches_for_garbage(in_program: bool):
+    """The program starts without them. Where a command is called from Python, what exists already is left alone."""
+    gc.enable()
+    frozen = gc.get_freeze_count()
+    if in_program:
+        gc.disable()
+    try:
+        with modules():
+            assert not gc.isenabled()
+        assert gc.isenabled()
+        assert (gc.get_freeze_count() > frozen) is in_program
+    finally:
+        gc.enable()
+        gc.unfreeze()
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from command_line import BLOCK, GALLERY, PRESS, assert_refused, run
+from command_line import BLOCK, GALLERY, PRESS, assert_refused, in_a_process, run
 from messages import assert_states
 
 from bemcontact import spec
@@ -25,6 +25,19 @@ def test_solve_prints_a_short_table(block: Path):
     assert_states(answer.stdout, "Equations … unique solution proved. … Mesh … not assessed.")
     assert "N/mm²" in answer.stdout
     assert max(map(len, answer.stdout.splitlines())) <= 100
+
+
+@pytest.mark.parametrize("accuracy", ["null", "0.01"])
+def test_solve_starts_with_the_direct_solver_alone(block: Path, accuracy: str):
+    """Other formulations, comparisons, references and figures are read where they are asked for."""
+    scipy = tuple(f"scipy.{name}" for name in ("optimize", "sparse", "special", "interpolate"))
+    packages = ("cvxpy", "clarabel", "matplotlib", "jinja2")
+    rooms = tuple(f"bemcontact.{name}" for name in ("modelling", "reference", "studies", "report.figures"))
+    solvers = tuple(f"bemcontact.formulations.{name}" for name in ("qp1", "qp2", "qp3", "local_solver.minimize"))
+    slow = (*scipy, *packages, *rooms, *solvers, "bemcontact.assessment.comparison", "bemcontact.analysis.mesh_study")
+    code = f"print([m for m in {slow} if m in sys.modules], file=sys.stderr)"
+    answer = in_a_process("solve", block, "--set", f"accuracy={accuracy}", code=code)
+    assert (answer.returncode, answer.stderr) == (0, "[]\n")
 
 
 @pytest.mark.parametrize("formulation", FORMULATIONS)

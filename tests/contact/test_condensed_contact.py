@@ -12,7 +12,7 @@ from bemcontact.contact.free_motions import MotionAlgebra, fix_gauge
 from bemcontact.contact.load_cases import LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
-from bemcontact.formulations.search import Start
+from bemcontact.formulations.starts import Start
 from bemcontact.options import Weights
 
 

@@ -15,7 +15,7 @@ from bemcontact.errors import OptionError
 from bemcontact.formulations import FORMULATIONS, clarabel, complementarity, qp1, qp2, qp3
 from bemcontact.formulations.complementarity import ACCEPTED
 from bemcontact.formulations.scaling import scale, scaled_point
-from bemcontact.formulations.search import draw_starts
+from bemcontact.formulations.starts import draw_starts
 from bemcontact.options import USES, FormulationName, SolveOptions
 
 N = 9

@@ -13,7 +13,7 @@ from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import FORMULATIONS, complementarity, qp1, qp3
 from bemcontact.formulations.scaling import scale, scaled_point
-from bemcontact.formulations.search import Start
+from bemcontact.formulations.starts import Start
 from bemcontact.options import Rows, SolveOptions, Weights
 
 ROWS = [*Rows]

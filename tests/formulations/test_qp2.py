@@ -13,7 +13,8 @@ from bemcontact.contact.solution import Status
 from bemcontact.errors import OptionError, ProblemError
 from bemcontact.formulations import complementarity, qp2
 from bemcontact.formulations.multistart import multistart
-from bemcontact.formulations.search import Start, contact_residual, draw_starts
+from bemcontact.formulations.scaling import contact_residual
+from bemcontact.formulations.starts import Start, draw_starts
 from bemcontact.options import Equilibrium, Rows, SolveOptions, Weights
 
 PENALIZED = SolveOptions.of("qp2", equilibrium=Equilibrium.PENALTY)

@@ -8,7 +8,7 @@ import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import OptionError, SpecError
 from bemcontact.formulations import qp1
-from bemcontact.formulations.search import Start, draw_starts, read_start
+from bemcontact.formulations.starts import Start, draw_starts, read_start
 from bemcontact.options import SolveOptions
 
 

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import bemcontact
+from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import facts
-from bemcontact.report.formatting import units_of
 from bemcontact.report.peak_places import LEVEL, equal_peaks
 
 HEIGHTS = st.lists(st.tuples(st.sampled_from([1.0, 0.9996, 0.98, 0.5]), st.integers(1, 3)), min_size=1, max_size=6)

@@ -23,9 +23,9 @@ from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import LocalSearch, Penalty, Status
 from bemcontact.problem import Problem, Units
-from bemcontact.report import formatting, text
+from bemcontact.report import comparison_text, contact_words, formatting, problem_text, text
+from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import facts, zone_forces
-from bemcontact.report.formatting import units_of
 from bemcontact.report.verdicts import shortfall
 
 GALLERY = Path(__file__).parents[2] / "models" / "gallery"
@@ -56,7 +56,7 @@ def printed(renderable: RenderableType, width: int = 100) -> str:
 
 
 def test_problem_summary_states_the_facts():
-    lines = printed(text.problem_summary(check(block()))).splitlines()
+    lines = printed(problem_text.problem_summary(check(block()))).splitlines()
     facts = {line[:20].strip(): line[20:].strip() for line in lines if line[18:20] == "  "}
     assert facts["Material"] == "E = 2.1e+05 N/mm², Poisson's ratio 0.3, plane strain"
     assert facts["Mesh"] == "8 elements, 16 nodes, 5 contact points"
@@ -96,7 +96,7 @@ def test_loads_that_deflect_a_contour_are_reported():
     zone = {"edges": ["bottom"], "surface": {"kind": "deflected_contour", "direction": [0, 1], "conditions": {
         "top": {"displacement": {"x": 0, "y": -0.25}}, "right": {"traction": {"x": 3}},
     }}}  # fmt: skip
-    answer = printed(text.problem_summary(check(block().with_value("contact_zones.foot", zone))))
+    answer = printed(problem_text.problem_summary(check(block().with_value("contact_zones.foot", zone))))
     assert "own contour, deflected; gap along (0, 1)" in answer
     assert "of foot, deflected by top u_x = 0, u_y = -0.25 mm; right t_x = 3 N/mm²" in answer
 
@@ -122,7 +122,7 @@ PENALTY = Penalty(value=1.0, raw=833.41, convexity_limit=13.007, convexity_limit
 
 
 def test_a_search_is_reported_with_both_phases_and_all_inertias(result: analysis.Result):
-    words = formatting.search_in_words(SEARCH, result.contact)
+    words = contact_words.search_in_words(SEARCH, result.contact)
     assert_states(words, "null vector: 136 iterations … 1 … 135 … 152 changes … whole Hessian: 89 positive, 1 negative")
     assert_states(words, "reduced Hessian: 3 positive, 1 negative at the feasible point, none at the end")
 
@@ -142,12 +142,12 @@ def test_a_search_is_reported_with_both_phases_and_all_inertias(result: analysis
 def test_a_penalty_is_reported_in_units(result: analysis.Result, changes: dict, sentence: str):
     """(1/μ) p² is p L² for the stiffness rows, so that μ is force over L⁴; (1/μ) L² for the others, L² over force."""
     search = dataclasses.replace(SEARCH, penalty=dataclasses.replace(PENALTY, **changes))
-    assert_states(formatting.search_in_words(search, result.contact), sentence)
+    assert_states(contact_words.search_in_words(search, result.contact), sentence)
 
 
 def test_a_penalty_of_a_held_body_without_units(result: analysis.Result):
     held = CondensedContact.from_compliance([[2.0]], [-3.0])
-    told = formatting.search_in_words(dataclasses.replace(SEARCH, penalty=PENALTY), held)
+    told = contact_words.search_in_words(dataclasses.replace(SEARCH, penalty=PENALTY), held)
     raw = "in the units of the problem"
     assert told.endswith(f"; penalty 1 (833.41 {raw}), convex up to 13.007 (10840 {raw})")
 
@@ -188,7 +188,7 @@ def test_volume_loads_are_listed():
     problem = Problem(**{**block().model_dump(), "loads": loads})
     lines = ["gravity (0, -9.81)", "rotation 5 about (1, 30)", "temperature change 20 … 30"]
     assert [*formatting.volume_loads(problem)] == lines
-    answer = printed(text.problem_summary(check(problem)))
+    answer = printed(problem_text.problem_summary(check(problem)))
     assert all(line in answer for line in lines)
 
 
@@ -201,7 +201,7 @@ def test_no_contact_is_stated(result: analysis.Result):
 
 @pytest.mark.parametrize("width", [60, 100, 200])
 def test_tables_keep_within_the_width_and_100_columns(result: analysis.Result, width: int):
-    for renderable in (text.result_summary(result), text.problem_summary(check(block()))):
+    for renderable in (text.result_summary(result), problem_text.problem_summary(check(block()))):
         assert max(map(len, printed(renderable, width).splitlines())) <= min(width, 100)
 
 
@@ -351,7 +351,7 @@ def test_without_contact_no_case_is_the_worst():
 
 
 def test_check_shows_tools_cases_and_combinations():
-    told = shown(text.problem_summary(check(made(HELD, **HELD_CASES))))
+    told = shown(problem_text.problem_summary(check(made(HELD, **HELD_CASES))))
     assert "punch, the surface of punch: loaded by y = -40, moment = 3" in told
     assert "table, the surface of table: displaced by y = 0.002, rotation = 0.001" in told
     assert "wind: changes right, top" in told
@@ -363,7 +363,7 @@ def test_check_shows_tools_cases_and_combinations():
 
 def test_check_shows_the_case_of_a_reference():
     reference = {"it": {"kind": "uniform", "pressure": 1, "zone": "table", "case": "wind"}}
-    told = shown(text.problem_summary(check(made(HELD, **HELD_CASES, reference=reference))))
+    told = shown(problem_text.problem_summary(check(made(HELD, **HELD_CASES, reference=reference))))
     assert "it: closed form, uniform, load case 'wind'" in told
 
 
@@ -384,7 +384,7 @@ def test_no_line_is_wider_than_the_terminal(width: int):
 
 def test_check_shows_the_factors_of_the_acting_case():
     """all: 1.5 wind - 0.5 heat + 2 settle + 4 spin + 0.7 push; on the punch -40 - 0.7 · 30 and 3 - 0.7 · 4."""
-    told = shown(text.problem_summary(check(made(HELD, **HELD_CASES, case="all"))))
+    told = shown(problem_text.problem_summary(check(made(HELD, **HELD_CASES, case="all"))))
     assert told.startswith("held block, all\n")
     assert "pressure 2, t_x = 1 (1.5 wind), t_y = -2 (1.5 wind)" in told
     assert "temperature change 20 … 50 (-0.5 heat)" in told
@@ -394,7 +394,7 @@ def test_check_shows_the_factors_of_the_acting_case():
 
 def test_the_words_of_the_tables_of_a_comparison_are_explained_below_them():
     """Each column whose name is no plain word."""
-    told = " ".join(printed(text.mesh_study_summary(on_one_mesh())).split())
+    told = " ".join(printed(comparison_text.mesh_study_summary(on_one_mesh())).split())
     for word in (
         "objective:",
         "difference:",

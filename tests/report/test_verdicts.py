@@ -11,12 +11,12 @@ from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.options import ComparisonOptions
 from bemcontact.report.bars import mesh_in_short
 from bemcontact.report.page import render
+from bemcontact.report.path_verdicts import path_verdicts
 from bemcontact.report.verdicts import (
     in_short,
     mesh_study_verdicts,
     mesh_verdict,
     overall,
-    path_verdicts,
     result_verdicts,
     shortfall,
 )

@@ -94,7 +94,7 @@ def test_a_broken_program_is_a_row(monkeypatch: pytest.MonkeyPatch):
     def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("division by zero")
 
-    monkeypatch.setattr(work, "solve_with", broken)
+    monkeypatch.setattr(work, "_solved", broken)
     assert "please report it: ZeroDivisionError" in rows(study_plan(CYLINDER, {LOAD: [10]}))[0].message
 
 

@@ -1,7 +1,7 @@
 """Equilibration: the program is scaled so that the units of the data have no influence on the answer."""
 
 from dataclasses import dataclass
-from math import frexp, ldexp, sqrt
+from math import frexp, isfinite, ldexp, sqrt
 
 import numpy as np
 
@@ -48,18 +48,16 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     no factors bring them together.
     """
     n, bounds = statement.c.size, np.array([statement.lower, statement.upper])
+    present = np.count_nonzero(np.isfinite(bounds))
     natural = natural_factors(statement, bounds)
-    D, E = natural[:n], natural[n:]
-    for _ in range(SWEEPS):
-        A = E[:, None] * statement.A * D
-        columns = np.maximum.reduce(np.abs(A), axis=0, initial=0.0)
-        columns[columns == 0.0] = 1.0
-        rows = np.maximum.reduce(np.abs(A), axis=1, initial=0.0)
-        rows[rows == 0.0] = 1.0
-        D, E = D / np.sqrt(columns), E / np.sqrt(rows)
-    D = _power_of_two(D)
-    E = _power_of_two(E / row_lengths(E[:, None] * statement.A * D))
-    A = E[:, None] * statement.A * D
+    D, E, A = natural[:n], natural[n:], statement.A
+    if E.size:
+        D, E = _balanced(A, D, E)
+        D = _power_of_two(D)
+        E = _power_of_two(E / row_lengths(E[:, None] * A * D))
+        A = E[:, None] * A * D
+    else:
+        D = _power_of_two(D)
     bounds *= np.concatenate([1.0 / D, E])
     smaller = _smaller_unit(bounds, max(largest(E), largest(1.0 / D)))
     if smaller < 1.0:
@@ -68,13 +66,29 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     unit = _near_power(1.0 / (max(largest(H), largest(c)) or 1.0))
     H *= unit
     c *= unit
-    finite = all(np.isfinite(part).all() for part in (H, c, A, D, E, 1.0 / D, 1.0 / E))
-    if not finite or np.count_nonzero(np.isfinite(bounds)) < np.isfinite([statement.lower, statement.upper]).sum():
+    finite = all(isfinite(largest(part)) for part in (H, c, A, D, E, 1.0 / D, 1.0 / E))
+    if not finite or np.count_nonzero(np.isfinite(bounds)) < present:
         raise ProblemError(
             "the sizes of entries and bounds are too far apart for double precision; choose other units, or write 0 "
             "for what is round-off"
         )
     return Statement(H=H, c=c, A=A, lower=bounds[0], upper=bounds[1]), Scales(variables=D, rows=E, objective=unit)
+
+
+def _balanced(A: Array, D: Array, E: Array) -> tuple[Array, Array]:
+    """The factors of columns and rows by which the largest entry of each column and row of A is about one."""
+    sizes = np.abs(A)
+    sizes *= E[:, None]
+    sizes *= D
+    for _ in range(SWEEPS):
+        columns = np.sqrt(np.maximum.reduce(sizes, axis=0))
+        rows = np.sqrt(np.maximum.reduce(sizes, axis=1))
+        columns[columns == 0.0] = 1.0
+        rows[rows == 0.0] = 1.0
+        sizes /= rows[:, None]
+        sizes /= columns
+        D, E = D / columns, E / rows
+    return D, E
 
 
 def natural_factors(statement: Statement, bounds: Array) -> Array:
@@ -92,21 +106,22 @@ def natural_factors(statement: Statement, bounds: Array) -> Array:
     present, logarithms = _entries(statement)
     bounds_present, of_bounds = _logarithms(_smaller_bounds(bounds))
     objective, rows, of_rows = present[: n + 1], present[n + 1 :], logarithms[n + 1 :]
-    column = OF_OBJECTIVE * np.add.reduce(objective, axis=0)
-    of_column = OF_OBJECTIVE * np.add.reduce(logarithms[: n + 1], axis=0)
-    whole = 0.5 * (np.add.reduce(column) + OF_OBJECTIVE * np.add.reduce(objective[n])).item() + UNDECIDED
-    of_whole = 0.5 * (np.add.reduce(of_column) + OF_OBJECTIVE * np.add.reduce(logarithms[n])).item()
+    weights, ones = np.full(n + 1, OF_OBJECTIVE), np.ones(n)
+    column, of_column = weights.dot(objective), weights.dot(logarithms[: n + 1])
+    whole = 0.5 * float(column.dot(ones) + OF_OBJECTIVE * objective[n].dot(ones)) + UNDECIDED
+    of_whole = 0.5 * float(of_column.dot(ones) + OF_OBJECTIVE * logarithms[n].dot(ones))
     share, diagonal = column / whole, column + OF_BOUNDS * bounds_present[:n]
     right = OF_BOUNDS * of_bounds[:n] - of_column + of_whole * share
     reduced = OF_OBJECTIVE * objective[:n]
     reduced -= column[:, None] * share
-    e_diagonal = np.add.reduce(rows, axis=1) + (OF_BOUNDS * bounds_present[n:] + UNDECIDED)
-    e_right = np.add.reduce(of_rows, axis=1) + OF_BOUNDS * of_bounds[n:]
+    e_diagonal = rows.dot(ones) + (OF_BOUNDS * bounds_present[n:] + UNDECIDED)
+    e_right = of_rows.dot(ones) + OF_BOUNDS * of_bounds[n:]
     if rows.size:
-        diagonal += np.add.reduce(rows, axis=0)
+        units = np.ones(e_right.size)
+        diagonal += units.dot(rows)
         shares = rows / e_diagonal[:, None]
         reduced -= rows.T.dot(shares)
-        right += e_right.dot(shares) - np.add.reduce(of_rows, axis=0)
+        right += e_right.dot(shares) - units.dot(of_rows)
     reduced.reshape(-1)[:: n + 1] += diagonal + UNDECIDED * (1.0 + largest(diagonal))
     d = np.minimum(np.maximum(posv(reduced, right)[1], -OF_VARIABLE), OF_VARIABLE)
     e = np.minimum(np.maximum((e_right + rows.dot(d)) / -e_diagonal, -OF_ROW), OF_ROW)

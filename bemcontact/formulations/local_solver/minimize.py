@@ -1,6 +1,7 @@
 """`minimize_qp`: scale the data, run both phases until a claim passes its check, and return to the given units."""
 
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from bemcontact.formulations.local_solver.optimality import FirstOrder, cleaned_
 from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
 from bemcontact.formulations.local_solver.progress import FINER, PARALLEL, SearchState
+from bemcontact.formulations.local_solver.ratio_test import nearest
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
 from bemcontact.formulations.local_solver.statement import (
     EPS,
@@ -25,8 +27,9 @@ from bemcontact.formulations.local_solver.statement import (
     numbers,
     read_statement,
 )
-from bemcontact.formulations.local_solver.working_set import WorkingSet, nearest, supporting
+from bemcontact.formulations.local_solver.working_set import WorkingSet, supporting
 
+DEFAULTS = QPOptions()
 RENEWALS = 3
 """Largest number of restarts from a stationary point that is doubtful, or which the run has reached from far away."""
 FAILURES = 6
@@ -270,7 +273,7 @@ def minimize_qp(
         The data do not state a quadratic program.
     """
     if options is None:
-        options = QPOptions()
+        options = DEFAULTS
     elif not isinstance(options, QPOptions):
         found = type(options).__name__
         raise ProblemError(f"options is a {found}: give a QPOptions, as in QPOptions(max_iterations=50)")
@@ -304,7 +307,7 @@ def _result(stated: Statement, scales: Scales, progress: SearchState, finding: F
     x = np.minimum(np.maximum(scales.variables * progress.x, stated.lower[:n]), stated.upper[:n])
     multipliers = scales.multipliers(finding.multipliers) / scales.objective
     objective = stated.objective(x)
-    finite = np.isfinite(x).all() and np.isfinite(multipliers).all() and np.isfinite(objective)
+    finite = isfinite(largest(x)) and isfinite(largest(multipliers)) and isfinite(objective)
     first = [line.phase for line in progress.lines].count(1)
     return QPResult(
         x=x,

@@ -268,37 +268,34 @@ def first_order(
     """
     statement, n = progress.statement, progress.x.size
     values = statement.values(progress.x)
-    slack = 2.0 * progress.slack
-    feasible = np.count_nonzero(statement.violation(values) <= progress.allowed) == slack.size
-    size = np.abs(multipliers)
+    slack, sharp, size = 2.0 * progress.slack, progress.sharp, np.abs(multipliers)
+    feasible = np.count_nonzero(statement.violation(values) <= progress.allowed(sharp)) == slack.size
     rounding = 4.0 * EPS * (size[:n] + size[n:].dot(statement.absolute[2]))
     own = progress.terms(size[:0], statement.A[:0])  # multipliers of which more is rounding say nothing
     rounding = np.minimum(rounding, np.maximum(MOST_ROUNDING * own, progress.zero))
     stationary = np.abs(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero + rounding
-    sides = statement.sides_reached(values, slack)
+    below, above = statement.distances(values)
+    sides = statement.sides_within(below, above, slack)
     held = sides != 0
-    ends = np.maximum(np.abs(values - statement.lower), np.abs(values - statement.upper))
-    thin = (
-        (ends <= progress.sharp) & ~statement.equality & (multipliers != 0.0)
-    )  # rounding decides which bound is reached
-    sides = np.where(thin, np.where(multipliers > 0.0, -1, 1), sides).astype(sides.dtype)
+    thin = np.maximum(below, above) <= sharp
+    if np.count_nonzero(thin):  # rounding decides which bound is reached
+        thin &= ~statement.equality & (multipliers != 0.0)
+        sides[thin] = np.where(multipliers[thin] > 0.0, -1, 1)
     wrong = np.where(held, sides * multipliers, size)
     wrong[statement.equality] = 0.0
-    held[n:] &= np.logical_or.reduce(statement.A, axis=1)  # a row of zeros holds nothing
+    held[n:] &= statement.absolute[2].dot(np.ones(n)) > 0.0  # a row of zeros holds nothing
     strong = held & (statement.equality | (size > WEAK * zeros))
-    active = working | (statement.sides_reached(values, progress.sharp) != 0)
+    active = working | (np.minimum(below, above) <= sharp)
     tolerated = 2.0 * zeros
     tolerated[n:] = np.maximum(tolerated[n:], 2.0 * progress.zero)
+    likely = np.where(zeros > progress.zero, DOUBT_OF_ROUGH, DOUBT)
     return FirstOrder(
         holds=feasible and np.count_nonzero(stationary) == n and np.count_nonzero(wrong <= tolerated) == zeros.size,
         strong=strong,
         weak=held & ~strong & active,
         sides=sides,
         size=size,
-        doubtful=bool(
-            (wrong > np.where(zeros > progress.zero, DOUBT_OF_ROUGH, DOUBT) * zeros).any()
-            or (wrong > SEEN * terms).any()
-        ),
+        doubtful=bool(np.count_nonzero(wrong > np.fmin(likely * zeros, SEEN * terms))),
     )
 
 

@@ -10,15 +10,9 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.progress import SearchState
-from bemcontact.formulations.local_solver.statement import Sides, Statement
-from bemcontact.formulations.local_solver.working_set import (
-    INFINITY,
-    BlockingConstraint,
-    WorkingSet,
-    nearest,
-    side_reached,
-    wrong_sign,
-)
+from bemcontact.formulations.local_solver.ratio_test import BlockingConstraint, nearest, side_reached
+from bemcontact.formulations.local_solver.statement import INFINITY, Sides, Statement
+from bemcontact.formulations.local_solver.working_set import WorkingSet, wrong_sign
 
 
 def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> tuple[WorkingSet, Array | None]:
@@ -30,10 +24,17 @@ def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> t
     """
     statement, n = progress.statement, progress.x.size
     if not np.count_nonzero(violated_signs(progress)):
-        return _with_equalities(statement, sides), None
-    working = WorkingSet(statement, sides)
-    progress.place(working.onto(progress.x))
-    while violated := (signs := _signs_of_others(progress, working)).dot(signs):
+        return WorkingSet(statement, _and_equalities(statement, sides), sides != 0), None
+    working = WorkingSet(statement, _and_equalities(statement, sides))
+    near = working.onto(progress.x)
+    if progress.loses_digits(near):  # equalities are met one by one
+        working = WorkingSet(statement, sides)
+        near = working.onto(progress.x)
+    progress.place(near)
+    while (violated := (signs := _signs_of_others(progress, working)).dot(signs)) or progress.drifted:
+        if not violated:
+            progress.place(working.onto(progress.x))
+            continue
         gradient = statement.transposed(signs)
         zero = fineness * progress.options.optimality_tolerance * sqrt(violated)
         multipliers = working.multipliers(gradient)
@@ -55,15 +56,14 @@ def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> t
     if working.number == n and working.sharp and not np.count_nonzero(statement.equality > working.held):
         working.null_space = np.zeros((n, 0))  # a vertex needs no null space
         return working, None
-    return _with_equalities(statement, working.sides), None
+    return WorkingSet(statement, _and_equalities(statement, working.sides), working.held), None
 
 
-def _with_equalities(statement: Statement, sides: Sides) -> WorkingSet:
-    """Working set of these sides and all equalities."""
-    wanted = sides != 0
+def _and_equalities(statement: Statement, sides: Sides) -> Sides:
+    """These sides and those of all equalities."""
     sides = sides.copy()
     sides[statement.equality] = 2
-    return WorkingSet(statement, sides, wanted)
+    return sides
 
 
 def violated_signs(progress: SearchState) -> Array:
@@ -91,7 +91,7 @@ def _certificate(working: WorkingSet, signs: Array, multipliers: Array) -> Array
 def _step(progress: SearchState, working: WorkingSet, signs: Array, direction: Array, dropped: int | None) -> bool:
     """Move along the direction to the constraint that ends the step, and hold it; False if there is none."""
     length = sqrt(direction.dot(direction))
-    along = progress.statement.values(direction)
+    along = working.values(direction)
     wall = nearest(progress, along, length, working.held | signs.astype(bool), working)
     inner = _breakpoint(progress, signs, along, length, INFINITY if wall is None else wall.step)
     block = inner or wall

@@ -20,15 +20,9 @@ from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, pivoted_cholesky
 from bemcontact.formulations.local_solver.optimality import SEEN
 from bemcontact.formulations.local_solver.progress import FINE, SearchState
+from bemcontact.formulations.local_solver.ratio_test import BlockingConstraint, nearest
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
-from bemcontact.formulations.local_solver.working_set import (
-    FLAT,
-    TEMPORARY,
-    BlockingConstraint,
-    WorkingSet,
-    nearest,
-    wrong_sign,
-)
+from bemcontact.formulations.local_solver.working_set import FLAT, TEMPORARY, WorkingSet, wrong_sign
 
 REFINEMENTS = 4
 """Largest number of steps of refinement."""
@@ -52,7 +46,7 @@ class ReducedHessian:
     def __init__(self, statement: Statement, null_space: Array) -> None:
         n, k = null_space.shape
         self.statement = statement
-        self._top = float(statement.absolute[0].max())
+        self._top = largest(statement.absolute[0])
         self._columns = np.zeros((n, n), order="F")
         self.left_over = null_space[:, :0]
         self._resize(0)
@@ -84,13 +78,13 @@ class ReducedHessian:
 
     def enter(self, direction: Array) -> None:
         """Add a unit direction to the null space, to Z or as the pending one: O(n²)."""
-        d, H, Z = direction, self.statement.H, self.Z
-        product = H.dot(d)
+        d, statement, Z = direction, self.statement, self.Z
+        product = statement.bent(d)
         curvature = float(d.dot(product))
         length = 1.0
         for _ in range(2 if self.size else 0):
             d = d - Z.dot(product.dot(Z))
-            product = H.dot(d)
+            product = statement.bent(d)
             before, curvature = curvature, float(d.dot(product))
             if abs(curvature) > 0.01 * abs(before):
                 break  # no digits were lost that a second pass would restore
@@ -133,7 +127,7 @@ class ReducedHessian:
     def rounding(self, direction: Array) -> Array:
         """Rounding of each component of a direction that was made conjugate to Z (n,)."""
         size, Z = np.abs(direction), np.abs(self.Z)
-        return EPS * (size + Z.dot(self.statement.absolute[0].dot(size).dot(Z)))
+        return EPS * (size + Z.dot(self.statement.curved(size).dot(Z)))
 
     def clear(self, variable: int) -> None:
         """Set the component of a fixed variable to zero in all directions."""
@@ -233,8 +227,7 @@ class Descent:
             large = reduced.dot(reduced) > max(0.1 * progress.zero, rounding) ** 2
             if large and not self._rests(hessian.newton(progress.gradient)):
                 return True, None
-        clear = max(CLEAR, largest(working.N)) * progress.zero  # N carries the rounding of the gradient to multipliers
-        place = wrong_sign(working, self._allowed(multipliers), clear, least_index=least)
+        place = self._clearly_wrong(self._allowed(multipliers))
         if place is not None:
             return False, place
         self._refine()
@@ -246,6 +239,16 @@ class Descent:
         if place is None and self._sharpened():
             place = wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
         return False, place
+
+    def _clearly_wrong(self, multipliers: Array) -> int | None:
+        """The place of a constraint whose multiplier has a wrong sign beyond all rounding."""
+        # N carries the rounding of the gradient to multipliers
+        working, zero = self.working, self.progress.zero
+        place = wrong_sign(working, multipliers, CLEAR * zero, least_index=self.progress.least_index)
+        n = working.free.size
+        if place is None or not working.size or (place >= n and working.ids[place - n] == TEMPORARY):
+            return place
+        return place if working.is_below(abs(multipliers.item(place)) / zero) else None
 
     def _rests(self, step: Array) -> bool:
         """Whether a step from the start is no more than rounding, since the start is an answer of this solver."""
@@ -263,7 +266,7 @@ class Descent:
         for sweep in range(REFINEMENTS if hessian.size else 1):
             x = working.onto(x)
             if hessian.size:
-                step = hessian.newton(working.reduced(progress.statement.H.dot(x) + progress.statement.c))
+                step = hessian.newton(working.reduced(progress.statement.bent(x) + progress.statement.c))
                 x, self._moved = x + step, largest(step)
                 if sweep and largest(step) <= 1e-14 * max(1.0, largest(x)):
                     break
@@ -300,7 +303,7 @@ class Descent:
         """Step towards the minimizer on the working set, as far as the constraints allow."""
         progress, working = self.progress, self.working
         direction = self.hessian.newton(progress.gradient)
-        along = progress.statement.values(direction)
+        along = working.values(direction)
         slope, length = float(progress.gradient.dot(direction)), sqrt(direction.dot(direction))
         block = nearest(progress, along, length, working.held, working)
         if block is None or block.step > 1.0:
@@ -323,7 +326,7 @@ class Descent:
             return None
         if slope > 0.0:
             direction, slope = -direction, -slope
-        along = progress.statement.values(direction)
+        along = self.working.values(direction)
         block = self._met(direction, along)
         if level and block is not None:
             back = self._met(direction, -along)
@@ -367,7 +370,7 @@ class Descent:
         progress, working = self.progress, self.working
         terms = progress.terms(self.multipliers[progress.x.size :], working.W)
         of_rows = terms.dot(np.abs(working.N))
-        rounded = of_rows.dot(np.abs(working.W)) + progress.statement.absolute[0].dot(self._reach(terms))
+        rounded = of_rows.dot(np.abs(working.W)) + progress.statement.curved(self._reach(terms))
         return np.concatenate([np.maximum(terms, ROUNDED * rounded), of_rows])
 
     def _fine_zero(self, multipliers: Array) -> Array:
@@ -389,7 +392,7 @@ class Descent:
         moved = Z.dot(Z.T.dot(terms[:, None] * _phases(size.size)))
         if working.size:
             by_rows = working.N.dot(np.abs(working.W).dot(size)[:, None] * _phases(working.size))
-            by_rows -= Z.dot(Z.T.dot(self.progress.statement.H.dot(by_rows)))
+            by_rows -= Z.dot(Z.T.dot(self.progress.statement.bent(by_rows)))
             moved = np.hypot(moved, by_rows)
         return np.hypot(moved[:, 0], moved[:, 1])
 

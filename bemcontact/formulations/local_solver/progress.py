@@ -30,6 +30,9 @@ LOST = EPS
 WORN = 16.0
 """Size of a component before, relative to now or to one, from which its rounding counts."""
 
+DRIFT = 100.0
+"""A point may have lost so many times the rounding of the farthest point on the way to it."""
+
 MANY = 100
 """Largest number of points that are stored before `traveled` is updated."""
 
@@ -105,19 +108,28 @@ class SearchState:
         return bool((self.traveled > WORN * np.maximum(np.abs(self.x), 1.0)).any())
 
     @property
-    def sharp(self) -> Array:
-        """Distance of each constraint from its bound that may be rounding (n + m,)."""
-        size = np.abs(self.x)
-        terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
-        return np.maximum(NEAR * self._slack, 100.0 * EPS * terms)
+    def drifted(self) -> bool:
+        """Whether steps from far away may have left more than a small part of a tolerance since `place`."""
+        return self._steps and self._is_far(self.far)
+
+    def loses_digits(self, x: Array) -> bool:
+        """Whether rounding of this point or of one before it is more than a small part of a tolerance."""
+        return self._is_far(max(self.far, sqrt(x.dot(x))))
+
+    def _is_far(self, distance: float) -> bool:
+        """Whether rounding at this distance from zero is more than a small part of a tolerance."""
+        return DRIFT * EPS * distance > self.options.feasibility_tolerance
 
     @property
-    def allowed(self) -> Array:
-        """Violation of each constraint that a claim may leave (n + m,): a small part of its own terms too."""
-        size = np.abs(self.x)
-        terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
+    def sharp(self) -> Array:
+        """Distance of each constraint from its bound that may be rounding (n + m,)."""
+        return np.maximum(NEAR * self._slack, 100.0 * EPS * self.statement.terms(np.abs(self.x)))
+
+    def allowed(self, sharp: Array) -> Array:
+        """Violation of each constraint that a claim may leave (n + m,): a small part of its own terms, or `sharp`."""
+        terms = self.statement.terms(np.abs(self.x))
         own = OWN * np.maximum(self.statement.bound_size, OF_TERMS * terms)
-        return np.minimum(2.0 * self.slack, np.maximum(own, self.sharp))
+        return np.minimum(2.0 * self.slack, np.maximum(own, sharp))
 
     def tighten(self) -> None:
         """Reduce the tolerance of the constraints, after a claim failed."""
@@ -134,8 +146,7 @@ class SearchState:
 
         A component that is zero in truth is rounding of the points before it, and counts with its size.
         """
-        H, c, _ = self.statement.absolute
-        terms = H.dot(np.maximum(np.abs(self.x), EPS * self.traveled)) + c
+        terms = self.statement.curved(np.maximum(np.abs(self.x), EPS * self.traveled)) + self.statement.absolute[1]
         return terms + np.abs(of_rows).dot(np.abs(rows)) if of_rows.size else terms
 
     def fine_zero(self, terms: Array, rows: Array, inverse: Array, reach: Array) -> Array:
@@ -160,7 +171,7 @@ class SearchState:
         """
         size = self.traveled
         size = np.where(size <= LOST * max(self.far, 1.0), size / EPS, size)
-        return EPS * np.maximum(terms, self.statement.absolute[0].dot(np.maximum(size, reach)))
+        return EPS * np.maximum(terms, self.statement.curved(np.maximum(size, reach)))
 
     def level(self, direction: Array, zero: Array) -> float:
         """Size of a slope along a direction that counts as zero, from that of each component of the gradient (n,)."""
@@ -180,11 +191,10 @@ class SearchState:
 
     def place(self, x: Array) -> None:
         """Move to a point, and compute values, slacks and gradient there."""
-        self.x, self.values = x, self.statement.values(x)
+        self.x, self.values, self._steps = x, self.statement.values(x), False
         size = np.abs(x)
         self.far = max(self.far, sqrt(size.dot(size)))
-        terms = np.concatenate([size, self.statement.absolute[2].dot(size)])
-        self.slack = np.maximum(self._slack, 10.0 * EPS * terms)
+        self.slack = np.maximum(self._slack, 10.0 * EPS * self.statement.terms(size))
         self.lowest, self.highest = self.statement.lower - self.slack, self.statement.upper + self.slack
         self.look()
 
@@ -192,6 +202,7 @@ class SearchState:
         """Take a step; `along` is [d; A d], `length` that of the direction. The gradient waits for `look`."""
         self.stalled = 0 if step * length > 1e-11 else self.stalled + 1
         if step > 0.0:
+            self._steps = True
             self.far += step * length
             self.values = self.values + (along if step == 1.0 else step * along)
             self.x = self.values[: self.x.size]
@@ -205,7 +216,7 @@ class SearchState:
         self._passed.append(x)
         if len(self._passed) > MANY:
             self._take_in()
-        product = statement.H.dot(x)
+        product = statement.bent(x)
         self.gradient = product + statement.c
         self._terms = max(sqrt(float(product.dot(product)) * self._part), self._least)
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)

@@ -16,6 +16,9 @@ Sides = NDArray[np.int8]
 
 INFINITE = 1e20
 """A bound of this size or more counts as infinite, as in most solvers."""
+WORTH_SPARSE, SPARSE = 150, 0.1
+"""Least number of variables, and largest part of entries that are not zero, of a matrix whose zeros are left out."""
+INFINITY = float("inf")
 EPS = float(np.finfo(float).eps)
 
 
@@ -53,10 +56,27 @@ class Statement:
         """|H|, |c|, |A|, from which bounds of the rounding are computed."""
         return np.abs(self.H), np.abs(self.c), np.abs(self.A)
 
+    @cached_property
+    def _factors(self) -> tuple[Any, Any]:
+        """H and |H|, without their zeros if products are faster then."""
+        n = self.c.size
+        if n < WORTH_SPARSE or np.count_nonzero(self.H) > SPARSE * n * n:
+            return self.H, self.absolute[0]
+        H = sparse.csr_array(self.H)
+        return H, abs(H)
+
+    def bent(self, x: Array) -> Array:
+        """H x."""
+        return self._factors[0].dot(x)
+
+    def curved(self, size: Array) -> Array:
+        """Sum of the sizes of the terms of H x, from the sizes of x."""
+        return self._factors[1].dot(size)
+
     @property
     def row_sum(self) -> float:
         """The largest sum of a row of |H|."""
-        return largest(np.add.reduce(self.absolute[0], axis=1))
+        return largest(self.absolute[0].dot(np.ones(self.c.size)))
 
     @cached_property
     def bound_size(self) -> Array:
@@ -84,10 +104,23 @@ class Statement:
         self.A.dot(x, values[n:])
         return values
 
+    def terms(self, size: Array) -> Array:
+        """Sum of the sizes of the terms of each value (n + m,), from the sizes of the variables (n,)."""
+        m, n = self.A.shape
+        if m == 0:
+            return size
+        terms = np.empty(n + m)
+        terms[:n] = size
+        self.absolute[2].dot(size, terms[n:])
+        return terms
+
     def transposed(self, y: Array) -> Array:
         """[I; A]ᵀ y."""
         n = self.c.size
-        return y[:n] + y[n:].dot(self.A)
+        of_rows = y[n:].nonzero()[0]
+        if 4 * of_rows.size >= self.A.shape[0]:
+            return y[:n] + y[n:].dot(self.A)
+        return y[:n] + y[n + of_rows].dot(self.A[of_rows])
 
     def normal(self, constraint: int) -> Array:
         """Gradient of one constraint."""
@@ -108,17 +141,24 @@ class Statement:
 
     def sides_reached(self, values: Array, slack: Array) -> Sides:
         """Nearer bound of each active constraint (-1, +1, or 2 for an equality); 0 if it is farther than its slack."""
-        lower, upper = np.abs(values - self.lower), np.abs(values - self.upper)
-        sides = np.ones(values.size, dtype=np.int8)
-        sides[lower <= upper] = -1
+        return self.sides_within(*self.distances(values), slack)
+
+    def distances(self, values: Array) -> tuple[Array, Array]:
+        """Distance of each value from its lower and from its upper bound (n + m,)."""
+        return np.abs(values - self.lower), np.abs(values - self.upper)
+
+    def sides_within(self, below: Array, above: Array, slack: Array) -> Sides:
+        """`sides_reached` from the `distances`."""
+        sides = np.ones(below.size, dtype=np.int8)
+        sides[below <= above] = -1
         sides[self.equality] = 2
-        sides[np.minimum(lower, upper) > slack] = 0
+        sides[np.minimum(below, above) > slack] = 0
         return sides
 
     def rounding(self, d: Array) -> float:
         """Bound of the rounding in dᵀHd."""
         size = np.abs(d)
-        product = self.absolute[0].dot(size)
+        product = self.curved(size)
         return 100.0 * sqrt(d.size) * EPS * float(size.dot(product) + largest(size) * largest(product * (size > 0.0)))
 
     def violation(self, values: Array) -> Array:

@@ -1,4 +1,4 @@
-"""The working set, and the constraints that leave it (pricing) and enter it (ratio test).
+"""The working set, and the constraint that leaves it (pricing).
 
 The shortest right inverse of its rows is updated when it changes by one constraint. Bounds of the working set fix their
 variables; only rows need algebra. With W the rows on the variables that are free,
@@ -11,7 +11,6 @@ one (Greville, SIAM Review 2 (1960) 15-22).
 """
 
 from math import sqrt
-from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -25,8 +24,8 @@ from bemcontact.formulations.local_solver.factorizations import (
     orthogonal,
     unit_rows,
 )
-from bemcontact.formulations.local_solver.progress import FINE, PARALLEL, STALLED, SearchState
-from bemcontact.formulations.local_solver.statement import EPS, Sides, Statement, largest
+from bemcontact.formulations.local_solver.progress import FINE, SearchState
+from bemcontact.formulations.local_solver.statement import EPS, INFINITY, Sides, Statement, largest
 
 EQUALITY = 2
 TEMPORARY, FLAT = -1, -2
@@ -41,11 +40,16 @@ ALIKE = 1e-12
 FEW_DIGITS = 1e-12
 """Relative rounding of a component of a point on rows beyond which remainders are computed with twice the digits."""
 
+FEW = 100
+"""Number of constraints up to which products with all rows are as fast as with some."""
+
+EXACT = 1e-15
+"""Product of a unit direction with the rows that it does not change, up to which it needs no correction."""
+
 SHARP, WEAR = 1e-12, 1e-8
 """Relative size of a refinement above which refinements are needed, and above which N is computed again."""
-INFINITY = float("inf")
-FAINT = 1e-14
-"""Limit, in place of `PARALLEL`, on a long step."""
+SMALL = 10_000
+"""Number of entries up to which the largest one of N is looked for."""
 
 
 class WorkingSet:
@@ -59,8 +63,7 @@ class WorkingSet:
     sides, held : (n + m,) sides that are held, and whether each is
     free : (n,) 1 for a variable that is not fixed by a bound, else 0
     number : how many constraints are held, temporary ones included
-    N, W : (n, r) and (r, n), right inverse, zero in the rows of fixed variables; normals of the rows held, on all
-        variables
+    W : (r, n) normals of the rows held, on all variables
     null_space : (n, k) orthonormal directions that change nothing held at the start; later changes leave them alone
     ids : (r,) constraint of each row of W; `TEMPORARY` or `FLAT` for one that is none
     signs : (n + r,) -1 for a variable or row at its lower bound, +1 at its upper, 0 for any other
@@ -77,7 +80,8 @@ class WorkingSet:
         self._N, self._W = np.zeros((n, n), order="F"), np.zeros((n, n))
         self._ids, self._signs = np.zeros(n, dtype=np.intp), np.zeros(2 * n)
         free, rows = self.free.nonzero()[0], sides[n:].nonzero()[0]
-        kept, self.null_space = rows[:0], np.eye(n)[:, free]
+        kept, self.null_space = rows[:0], np.zeros((n, free.size))
+        self.null_space[free, np.arange(free.size)] = 1.0
         if rows.size and free.size:
             normals, length = unit_rows(A[rows][:, free])
             Y, null_space, T, independent = orthogonal(normals, DEPENDENT)
@@ -94,6 +98,8 @@ class WorkingSet:
         r = kept.size
         self.number = n - free.size + r
         self.temporary, self.sharp = 0, True
+        self._released: Array | None = None
+        self._bound = INFINITY
         signs = self.sides * (self.sides != EQUALITY)
         self._signs[:n] = signs[:n]
         if r:
@@ -103,8 +109,40 @@ class WorkingSet:
     def _resize(self, rows: int) -> None:
         """Set the views on the leading columns of N and rows of W."""
         self.size = rows
-        self.N, self.W, self.ids = self._N[:, :rows], self._W[:rows], self._ids[:rows]
+        self._inverse, self.W, self.ids = self._N[:, :rows], self._W[:rows], self._ids[:rows]
         self.signs = self._signs[: self.free.size + rows]
+
+    @property
+    def N(self) -> Array:
+        """Right inverse of W (n, r), zero in the rows of fixed variables."""
+        if self._released is not None:
+            direction, self._released = self._released, None
+            self._subtract(direction, direction.dot(self._inverse))
+        return self._inverse
+
+    def _subtract(self, column: Array, row: Array) -> None:
+        """Subtract column rowᵀ from N."""
+        add_rank_one(self._inverse, -1.0, column, row)
+        if self._N.size > SMALL:
+            self._bound += largest(column) * largest(row)
+
+    def is_below(self, limit: float) -> bool:
+        """Whether all entries of N are smaller than a limit."""
+        if self._N.size <= SMALL or self._bound >= limit:
+            self._bound = largest(self.N)
+        return self._bound < limit
+
+    def values(self, direction: Array) -> Array:
+        """[d; A d] of a direction that changes nothing held."""
+        A = self.statement.A
+        m, n = A.shape
+        if 2 * (self.size - self.temporary) < m or n + m <= FEW:
+            return self.statement.values(direction)
+        values = np.zeros(n + m)
+        values[:n] = direction
+        others = np.flatnonzero(~self.held[n:])
+        values[n + others] = A[others].dot(direction)
+        return values
 
     @property
     def numbers(self) -> NDArray[np.intp]:
@@ -125,12 +163,12 @@ class WorkingSet:
         """
         if self.size == 0:
             return gradient
-        of_rows = gradient.dot(self.N)
-        if refined or not self.sharp:
-            of_rows = self._refined(of_rows, gradient)
-        n = gradient.size
+        n, of_rows = gradient.size, gradient.dot(self.N)
         multipliers = np.empty(n + self.size)
-        np.subtract(gradient, of_rows.dot(self.W), multipliers[:n])
+        rest = multipliers[:n]
+        np.subtract(gradient, of_rows.dot(self.W), rest)
+        if refined or not self.sharp:
+            of_rows = self._refine(of_rows, gradient, rest)
         multipliers[n:] = of_rows
         return multipliers
 
@@ -152,13 +190,18 @@ class WorkingSet:
         of_all[self.ids[real]] = multipliers[n:][real]
         return of_all
 
-    def _refined(self, of_rows: Array, gradient: Array) -> Array:
-        """Multipliers of the rows after a refinement; from a new N if the correction is too large."""
-        correction = (gradient - of_rows.dot(self.W)).dot(self.N)
+    def _refine(self, of_rows: Array, gradient: Array, rest: Array) -> Array:
+        """Multipliers of the rows after a refinement, from a new N if the correction is too large.
+
+        The `rest` of the gradient without its part along the rows is changed too.
+        """
+        correction = rest.dot(self.N)
         if correction.dot(correction) > WEAR**2 * of_rows.dot(of_rows):
             self._renew()
             of_rows = gradient.dot(self.N)
-            correction = (gradient - of_rows.dot(self.W)).dot(self.N)
+            np.subtract(gradient, of_rows.dot(self.W), rest)
+            correction = rest.dot(self.N)
+        rest -= correction.dot(self.W)
         return of_rows + correction
 
     def _renew(self) -> None:
@@ -167,22 +210,22 @@ class WorkingSet:
         Y, _, T, order = orthogonal(self.W[:, free], 0.0)
         if order.size == self.size:
             self.N[np.ix_(free, order)] = Y @ inverse_triangle(T).T
-            self.sharp = True
+            self.sharp, self._bound = True, INFINITY
 
     def add(self, constraint: int, side: int) -> Array | None:
         """Add a constraint; return its normal, or None if that is in the span of the others: O(n²)."""
         normal = self.statement.normal(constraint)
         sign = side if side != EQUALITY else 0
         if constraint >= normal.size:
-            inverse = self._hold(normal, normal.dot(self.N))
+            inverse = self._hold(normal)
             if inverse is None:
                 return None
             self._append(normal, constraint, sign, inverse)
         else:
             if self.size:
-                if self._hold(normal, self.N[constraint].copy()) is None:
+                if self._hold(normal, constraint) is None:
                     return None
-                self.N[constraint] = 0.0
+                self._inverse[constraint] = 0.0
             self._signs[constraint], self.free[constraint] = sign, 0.0
         self.sides[constraint], self.held[constraint] = side, True
         self.number += 1
@@ -204,14 +247,20 @@ class WorkingSet:
 
     def fix(self, direction: Array, kind: int) -> None:
         """Add a temporary row, with a direction of the null space as its normal."""
-        inverse = self._hold(direction, direction.dot(self.N))
+        inverse = self._hold(direction)
         if inverse is not None:
             self._append(direction, kind, 0, inverse)
             self.number += 1
             self.temporary += 1
 
-    def _hold(self, normal: Array, along: Array) -> Array | None:
-        """Remove from N its part along the normal; return the new column, or None if the normal is dependent."""
+    def _hold(self, normal: Array, variable: int | None = None) -> Array | None:
+        """Remove from N its part along the normal; return the new column, or None if the normal is dependent.
+
+        The normal may be that of a variable.
+        """
+        if self._released is not None and self.number == normal.size - 1:
+            return self._exchange(normal, variable)
+        along = normal.dot(self.N) if variable is None else self.N[variable].copy()
         outside = (normal - along.dot(self.W)) * self.free
         again, size = outside.dot(self.N), float(outside.dot(normal))
         if again.dot(again) > SHARP**2 * size:
@@ -221,7 +270,19 @@ class WorkingSet:
         if self._is_rounding(size):
             return None
         inverse = outside / size
-        add_rank_one(self.N, -1.0, inverse, along)
+        self._subtract(inverse, along)
+        return inverse
+
+    def _exchange(self, normal: Array, variable: int | None) -> Array | None:
+        """As `_hold` where only the direction released last is free: one change of N instead of two."""
+        direction = self._released
+        assert direction is not None
+        along = normal.dot(self._inverse) if variable is None else self._inverse[variable].copy()
+        component = float(direction.dot(normal)) if variable is None else direction.item(variable)
+        if self._is_rounding(component * component):
+            return None
+        self._released, inverse = None, direction / component
+        self._subtract(inverse, along)
         return inverse
 
     def _append(self, normal: Array, constraint: int, sign: int, inverse: Array) -> None:
@@ -240,19 +301,25 @@ class WorkingSet:
             direction, constraint = self._along_variable(place), place
             self._signs[place], self.free[place] = 0.0, 1.0
         else:
-            direction, constraint = self._N[:, place - n].copy(), self._forget(place - n)
+            direction, constraint = self.N[:, place - n].copy(), self._forget(place - n)
         direction = self.within(direction)
         if constraint >= 0:
             self.sides[constraint], self.held[constraint] = 0, False
         self.number -= 1
         if self.size or place >= n:
             direction /= sqrt(direction.dot(direction))
-            add_rank_one(self.N, -1.0, direction, direction.dot(self.N))
+        if self.size:
+            self._released = direction
         return constraint, direction
 
     def within(self, direction: Array) -> Array:
         """The direction, made orthogonal to the rows again."""
-        return direction - self.N.dot(self.W.dot(direction)) if self.size else direction
+        if self.size == 0:
+            return direction
+        rest = self.W.dot(direction)
+        if rest.dot(rest) <= EXACT**2 * direction.dot(direction):
+            return direction
+        return direction - self.N.dot(rest)
 
     def _along_variable(self, variable: int) -> Array:
         """The direction that changes a fixed variable and no row."""
@@ -319,62 +386,6 @@ def supporting(progress: SearchState, sides: Sides) -> Sides:
     supporting = np.where(fixed, sides, 0).astype(sides.dtype)
     supporting[kept] = sides[kept]
     return supporting
-
-
-class BlockingConstraint(NamedTuple):
-    """The constraint that ends a step: its number, the side reached (-1 lower, +1 upper, 2 equality), and the step."""
-
-    constraint: int
-    side: int
-    step: float
-
-
-def nearest(
-    progress: SearchState, along: Array, length: float, held: BoolArray, working: WorkingSet | None = None
-) -> BlockingConstraint | None:
-    """The first constraint met by the direction and not held, by Harris' two passes; None if there is none.
-
-    The first pass finds the longest step at which nothing is violated beyond its tolerance; the second takes, among the
-    constraints met until then, the one that is met most steeply (Harris, Math. Programming 5 (1973) 1-28). A run that
-    has stalled takes the lowest number among the ties. A constraint in the span of a working set is not met within it.
-    """
-    speed = np.abs(along)
-    away = held | (speed <= PARALLEL * length)
-    block = _first(progress, along, speed, away)
-    if block is None or block.step * length > progress.long:
-        nearly_all = held | (speed <= FAINT * length)
-        if np.count_nonzero(nearly_all) < np.count_nonzero(away):
-            block = _first(progress, along, speed, nearly_all)
-            while working is not None and block is not None and working.spans(block.constraint):
-                nearly_all[block.constraint] = True  # what moves it is rounding
-                block = _first(progress, along, speed, nearly_all)
-    return block
-
-
-def _first(progress: SearchState, along: Array, speed: Array, away: BoolArray) -> BlockingConstraint | None:
-    """The first constraint met by the direction and not marked in `away` (n + m,)."""
-    statement, values = progress.statement, progress.values
-    # the bound ahead has the quotient that is not negative
-    steps = np.maximum((statement.upper - values) / along, (statement.lower - values) / along)
-    steps[away] = INFINITY
-    late = steps + progress.slack / speed
-    furthest = late.item(late.argmin())
-    if not furthest < INFINITY:  # nor is there one where the values have overflowed
-        return None
-    if progress.stalled <= STALLED:
-        met = (steps <= furthest).nonzero()[0]
-        constraint = met.item(speed[met].argmax())
-    else:
-        least = steps.item(steps.argmin())
-        constraint = int((steps <= least + 1e-13 * max(1.0, least)).argmax())
-    return BlockingConstraint(constraint, side_reached(progress, constraint, along), max(steps.item(constraint), 0.0))
-
-
-def side_reached(progress: SearchState, constraint: int, along: Array) -> int:
-    """Bound that the movement reaches: -1, +1, or 2 for an equality."""
-    if progress.statement.equality[constraint]:
-        return 2
-    return -1 if along.item(constraint) < 0.0 else 1
 
 
 def wrong_sign(working: WorkingSet, multipliers: Array, zero: float | Array, *, least_index: bool) -> int | None:

@@ -15,6 +15,7 @@ from bemcontact.assessment.comparison import SAME, Contender
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.options import FormulationName
+from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.page import (
     BLACK,
     COLOURS,
@@ -32,7 +33,7 @@ from bemcontact.report.figures.page import (
     show_decades,
 )
 from bemcontact.report.figures.result import AROUND, intervals_on, label_closed, window_around
-from bemcontact.report.formatting import number, units_of, with_unit
+from bemcontact.report.formatting import number, with_unit
 
 DASHES = ("solid", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
 """Line styles of the contenders of one formulation, in turn."""

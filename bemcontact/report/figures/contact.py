@@ -15,6 +15,7 @@ from bemcontact.arrays import Array, IntArray
 from bemcontact.bem.mesh import BoundaryState, element_curves
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.bars import with_bar, without_digits_beyond
+from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import LEVEL
 from bemcontact.report.figures.page import (
     BLACK,
@@ -29,7 +30,7 @@ from bemcontact.report.figures.page import (
 )
 from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports, surface_line
 from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, place_names
-from bemcontact.report.formatting import units_of, with_unit
+from bemcontact.report.formatting import with_unit
 
 VISIBLE = 0.005
 """Largest displacement over the size of the body from which on the undeformed outline is drawn."""

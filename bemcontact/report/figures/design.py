@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.modelling.gap_design.designed_gap import GapDesign
+from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.page import CYCLE, GREY, labeled, new_page, plain
-from bemcontact.report.formatting import units_of
 
 
 def figure_of_design(design: GapDesign) -> Figure:

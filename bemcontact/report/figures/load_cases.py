@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.report.bars import with_bar
+from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.contact import (
     body_extent,
     close_ups,
@@ -43,7 +44,7 @@ from bemcontact.report.figures.result import (
     of_zone,
     show_around,
 )
-from bemcontact.report.formatting import units_of, with_unit
+from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import case_verdicts
 
 INCHES = 12

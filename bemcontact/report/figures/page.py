@@ -23,7 +23,8 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import escaped_lines
 from bemcontact.files import output
 from bemcontact.options import FormulationName
-from bemcontact.report.formatting import number, units_of, vector, with_unit
+from bemcontact.report.contact_words import units_of
+from bemcontact.report.formatting import number, vector, with_unit
 
 FORMATS = (".png", ".svg", ".pdf")
 """Endings of the files that can be written."""

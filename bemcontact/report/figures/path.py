@@ -8,9 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
+from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.page import BLACK, CYCLE, QUALITY_COLOURS, labeled, new_page, plain, short_label
-from bemcontact.report.formatting import number, units_of
-from bemcontact.report.verdicts import in_short, overall, path_verdicts
+from bemcontact.report.formatting import number
+from bemcontact.report.path_verdicts import path_verdicts
+from bemcontact.report.verdicts import in_short, overall
 
 WIDTH, HEIGHT = 5.6, 2.5
 """Inches of each picture."""

@@ -11,6 +11,7 @@ from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.report.bars import with_bar
+from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import LEVEL
 from bemcontact.report.figures.contact import body_extent, close_ups, draw_deformed, sketch_contact
 from bemcontact.report.figures.page import (
@@ -29,7 +30,7 @@ from bemcontact.report.figures.page import (
     short_label,
     wrapped,
 )
-from bemcontact.report.formatting import units_of, with_unit
+from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import Verdict, in_short, overall, result_verdicts
 
 WIDE = 1.6

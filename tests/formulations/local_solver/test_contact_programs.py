@@ -17,7 +17,7 @@ from bemcontact import CondensedContact, QPResult, QPStatus, Status, minimize_qp
 from bemcontact.arrays import Array
 from bemcontact.formulations import FORMULATIONS, complementarity, qp3
 from bemcontact.formulations.scaling import scale
-from bemcontact.formulations.search import draw_starts
+from bemcontact.formulations.starts import draw_starts
 from bemcontact.options import SolveOptions
 
 CYLINDER = Path(__file__).parents[3] / "models" / "cylinder_on_plane.yaml"

@@ -12,7 +12,8 @@ from numpy.testing import assert_allclose
 from scipy.optimize import linprog
 
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.local_solver import QPOptions, QPResult, QPStatus, minimize_qp
+from bemcontact.formulations.local_solver.minimize import minimize_qp
+from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
 
 INF = np.inf
 

@@ -4,9 +4,10 @@ import numpy as np
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from bemcontact.formulations.local_solver import QPOptions, QPStatus, minimize_qp
+from bemcontact.formulations.local_solver.minimize import minimize_qp
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
 from bemcontact.formulations.local_solver.progress import SearchState
+from bemcontact.formulations.local_solver.result import QPOptions, QPStatus
 from bemcontact.formulations.local_solver.statement import read_statement
 from bemcontact.formulations.local_solver.working_set import WorkingSet
 

@@ -1,0 +1,102 @@
+"""The sizes that a mesh is made from: those of the geometry, of stated elements, and those that a search adds."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import Self
+
+import numpy as np
+
+from bemcontact.adaptivity.first_sizes import SizedOutline, outline, surface_sizes
+from bemcontact.adaptivity.sizes import GROWTH, Layers, Limit, Loop
+from bemcontact.errors import Issue, ProblemError
+from bemcontact.problem.geometry import MOST_ELEMENTS
+from bemcontact.problem.problem import Problem
+
+MOST_UNKNOWNS = 4000
+"""Largest number of unknowns of the finer mesh."""
+UNKNOWNS = 4
+"""Unknowns of an element: two displacements at each of two nodes, for the third is that of the next element."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactEnd:
+    """An end of contact on a loop."""
+
+    loop: int
+    position: float
+    after: bool
+    width: float
+
+
+@dataclass(kw_only=True)
+class MeshSizes:
+    """Sizes of elements along the boundary of a problem, and the mesh that follows from them."""
+
+    problem: Problem
+    outline: SizedOutline
+    sources: list[list[Limit]]
+    marks: list[list[float]]
+    layers: list[tuple[ContactEnd, float]] = field(default_factory=list)
+    spots: list[tuple[int, Limit]] = field(default_factory=list)
+    growth: float = GROWTH
+
+    @classmethod
+    def of(cls, problem: Problem) -> Self:
+        """Begin with the geometry, the surfaces, and stated elements; `ProblemError` if these alone are too many."""
+        stated = sum(edge.elements or 0 for edge in problem.boundary.edges)
+        if (most := MOST_UNKNOWNS // UNKNOWNS) < stated:
+            message = (
+                f"{stated} elements are stated, and a mesh that is found has at most {most}; state fewer, or elements "
+                "on all edges and no accuracy, so that the mesh is taken as it is"
+            )
+            raise ProblemError(Issue(path=("boundary",), message=message))
+        shape = outline(problem)
+        near, corners = surface_sizes(problem, shape)
+        limits: list[list[Limit]] = []
+        marks: list[list[float]] = []
+        for number, loop in enumerate(shape.loops):
+            own, ends = [*shape.sizes(number), *near.get(number, [])], [*corners.get(number, [])]
+            for edge in loop.edges:
+                start, length = loop.start_of[edge.name], edge.length
+                ends += [start + place * length for place in edge.ends_at]
+                if edge.elements is not None:
+                    at = start + length * edge.breakpoints(problem.mesh.refine)
+                    own += [Limit(low=low, high=high, size=high - low) for low, high in pairwise(at.tolist())]
+            limits.append(useful_limits(loop, own))
+            marks.append(ends)
+        # A mesh that is found asks for the accuracy as before.
+        kept = problem.model_copy(update={"accuracy": problem.asked_accuracy})
+        return cls(problem=kept, outline=shape, sources=limits, marks=marks)
+
+    def mesh(self, refine: int) -> Problem:
+        """The problem with elements as the sources ask, cut into equal parts."""
+        ends: dict[str, tuple[float, ...]] = {}
+        for number, loop in enumerate(self.outline.loops):
+            own = [(end, count) for end, count in self.layers if end.loop == number]
+            layers = [Layers(position=e.position, width=e.width, count=n, after=e.after) for e, n in own]
+            narrow = [limit for at, limit in self.spots if at == number]
+            marks = [*self.marks[number], *(end.position for end, _ in own)]
+            sized = replace(loop, growth=self.growth)
+            ends |= sized.element_ends(np.array([*self.sources[number], *narrow]), layers, marks)
+        if (total := sum(len(own) + 1 for own in ends.values())) > MOST_ELEMENTS:
+            needed = f"a mesh of this body needs {total} elements, more than {MOST_ELEMENTS}"
+            message = f"{needed}: it is too slender, or has too small parts; check its coordinates, or state elements"
+            raise ProblemError(Issue(path=("boundary",), message=message))
+        return cut(self.problem.with_element_ends(ends), refine)
+
+
+def first_mesh(problem: Problem) -> Problem:
+    """The problem on the first mesh, from the geometry alone and the elements that are stated."""
+    return MeshSizes.of(problem).mesh(1)
+
+
+def useful_limits(loop: Loop, limits: Sequence[Limit]) -> list[Limit]:
+    """The limits without those that others make idle."""
+    return [Limit(*row) for row in loop.without_idle(np.array(limits)).tolist()]
+
+
+def cut(problem: Problem, refine: int) -> Problem:
+    """The problem with each element of its mesh cut into equal parts."""
+    mesh = problem.mesh.model_copy(update={"refine": refine})
+    return problem.model_copy(update={"mesh": mesh})

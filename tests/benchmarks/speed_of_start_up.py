@@ -1,0 +1,56 @@
+"""Start of the commands against the import of the packages that all of them need."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+
+from children import children_seconds
+from speed_cylinder import MESH, MODEL
+from speed_page import Section, Settings, Table, Target
+from timing import least
+
+BASE = "numpy, scipy.linalg, pydantic, yaml"
+LARGEST = {"check": 1.7, "solve": 2.2, "--help": 0.7}
+"""CPU time over that of the base that was asked for."""
+
+TEXT = f"""\
+CPU time of whole processes, in turns. The base is `python -c "import {BASE}"`. `check` and `solve` read the
+cylinder of the paper, and `solve` finds a mesh for it. *stated mesh* solves the variant of this name.
+"""
+
+
+def commands() -> dict[str, list[str]]:
+    """Arguments of Python by name."""
+    program, model = ["-m", "bemcontact"], str(MODEL)
+    return {
+        "base": ["-c", f"import {BASE}"],
+        "--help": [*program, "--help"],
+        "check": [*program, "check", model],
+        "solve": [*program, "solve", model],
+        "solve, stated mesh": [*program, "solve", model, "--variant", MESH],
+        "solve, QP3": [*program, "solve", model, "--formulation", "qp3"],
+    }
+
+
+def run(arguments: list[str]) -> None:
+    """Run Python."""
+    subprocess.run([sys.executable, *arguments], check=True, capture_output=True)
+
+
+def measure(settings: Settings, say: Callable[[str], None]) -> Section:
+    """Measure all commands."""
+    taken: dict[str, list] = {name: [] for name in commands()}
+    for number in range(2 if settings.quick else 8):
+        say(f"round {number + 1}")
+        for name, arguments in commands().items():
+            taken[name].append(children_seconds(lambda arguments=arguments: run(arguments)))
+    times = {name: least(runs[1:]) for name, runs in taken.items()}  # the first run reads files and compiles
+    base = times["base"].cpu
+    rows = [[name, item.cpu, item.wall, item.cpu / base] for name, item in times.items()]
+    table = Table(columns={"Command": "", "CPU, s": ".2f", "wall, s": ".2f", "over base": ".2f"}, rows=rows)
+    targets = [
+        Target(name=f"`{name}` over the base of imports", asked=asked, measured=times[name].cpu / base)
+        for name, asked in LARGEST.items()
+    ]
+    raw = {name: [vars(run) for run in runs] for name, runs in taken.items()}
+    return Section(title="Start", text=TEXT, tables=[table], targets=targets, raw=raw)

@@ -1,0 +1,62 @@
+"""Members of a study in a second, with one worker and with two."""
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from children import children_seconds
+from speed_cylinder import MODEL
+from speed_page import Section, Settings, Table, Target
+from timing import Seconds, least
+
+MEMBERS, FEW = 1000, 40
+WORKERS = (1, 2)
+LONGEST, FASTER = 60.0, 1.8
+"""Seconds for all members on two processors, and how many times faster two workers should be than one."""
+
+TEXT = """\
+The command `study` of the cylinder of the paper, whose load has so many values from 20 to 60 in equal steps. Each
+member finds its own mesh. The command is timed with its start and the writing of its folder. Wall times say
+something only if nothing else runs on the machine.
+"""
+
+
+def study(members: int, workers: int) -> None:
+    """Run the command, with a folder of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        vary = f"conditions.top.pressure=20:60:{members}"
+        out = Path(folder) / "study"
+        command = [sys.executable, "-m", "bemcontact", "study", str(MODEL), "--vary", vary, "--output", "peak"]
+        subprocess.run([*command, "--workers", str(workers), "--out", str(out)], check=True, capture_output=True)
+
+
+def measure(settings: Settings, say: Callable[[str], None]) -> Section:
+    """Measure with each number of workers, in turns."""
+    members, taken = FEW if settings.quick else MEMBERS, {workers: [] for workers in WORKERS}
+    for number in range(1 if settings.quick else 2):
+        for workers in WORKERS:
+            say(f"round {number + 1}, workers: {workers}")
+            taken[workers].append(children_seconds(lambda workers=workers: study(members, workers)))
+    times: dict[int, Seconds] = {workers: least(runs) for workers, runs in taken.items()}
+    rows = [
+        [n, members, item.wall, item.cpu, members / item.wall, times[1].wall / item.wall] for n, item in times.items()
+    ]
+    columns = {"Workers": "d", "Members": "d", "wall, s": ".1f", "CPU, s": ".1f", "members in a second": ".1f",
+               "times as fast as one": ".2f"}  # fmt: skip
+    gain = times[1].wall / times[2].wall
+    targets = [
+        Target(name=f"study of {members} members, two workers, wall", asked=LONGEST, measured=times[2].wall, unit="s"),
+        Target(name="study: times as fast with two workers", asked=FASTER, at_least=True, measured=gain),
+    ]
+    enough = (os.cpu_count() or 1) >= 2 and not settings.quick
+    raw = {str(workers): [vars(run) for run in runs] for workers, runs in taken.items()}
+    return Section(
+        title="Studies",
+        text=TEXT,
+        tables=[Table(columns=columns, rows=rows)],
+        targets=targets if enough else [],
+        raw=raw,
+    )
