@@ -8,6 +8,11 @@ from .analysis.result import Result as Result
 from .analysis.solve import condense as condense
 from .analysis.solve import random_starts as random_starts
 from .analysis.solve import solve as solve
+from .analysis.stress import EdgeStress as EdgeStress
+from .analysis.stress import PointKind as PointKind
+from .analysis.stress import Stress as Stress
+from .analysis.stress_operator import StressOperator as StressOperator
+from .analysis.stress_operator import stress_operator as stress_operator
 from .assessment.comparison import Comparison as Comparison
 from .contact.condensed_contact import CondensedContact as CondensedContact
 from .contact.load_cases import Change as Change

@@ -148,7 +148,8 @@ class Interior:
             x, y = (block.known[:, axis].T - F[axis, 0].T @ u.real - F[axis, 1].T @ u.imag for axis in range(2))
             result[block.rows] = x + 1j * y
 
-        influence.each_block(points, place)
+        if len(z):
+            influence.each_block(points, place)
         return result
 
 

@@ -84,12 +84,14 @@ class StressField:
     Parameters
     ----------
     problem, mesh : Problem and its mesh
+    smooth : (m,) `smooth_starts`
     fields : on the boundary, less the particular solutions
     loads : volume loads of the states, and factors of them (q, …)
     """
 
     problem: Problem
     mesh: Mesh
+    smooth: BoolArray
     fields: BoundaryFields
     loads: Sequence[Loads]
     factors: Array
@@ -106,8 +108,9 @@ class StressField:
                 u = u - field.displacement[..., None] * factor
                 on_boundary = np.einsum("mkij,mkj->mki", field.stress[mesh.elements], mesh.normals)
                 t = t - on_boundary[..., None] * factor
-        fields = BoundaryFields.of(mesh, problem.material, u, t, smooth_starts(problem, mesh))
-        return cls(problem=problem, mesh=mesh, fields=fields, loads=loads, factors=factors)
+        smooth = smooth_starts(problem, mesh)
+        fields = BoundaryFields.of(mesh, problem.material, u, t, smooth)
+        return cls(problem=problem, mesh=mesh, smooth=smooth, fields=fields, loads=loads, factors=factors)
 
     @cached_property
     def interior(self) -> Interior:
@@ -121,18 +124,25 @@ class StressField:
 
     def stress(self, at: Located) -> Array:
         """σxx, σyy, σxy (3, k, q) [p]; where an element ends, the mean of both sides; not a number outside."""
-        material, q = self.problem.material, len(self.factors)
-        result = np.full((3, len(at.points), q), np.nan)
+        result = np.full((3, len(at.points), len(self.factors)), np.nan)
         inside, on = np.flatnonzero(at.inside), np.flatnonzero(~at.inside & ~at.outside)
         gradient = self.interior.gradient(self.interior.z(at.points[inside]), self.fields)
-        result[:, inside] = gradient.stress(material)
-        result[:, on] = self.fields.gradient(at.element[on], at.xi[on]).stress(material)
+        result[:, inside] = gradient.stress(self.problem.material) + self._volume_stress(at.points[inside])
+        result[:, on] = self.stress_on(at.element[on], at.xi[on], at.points[on])
         end = on[at.node[on] >= 0]
-        after = at.node[end]
-        for element, xi in ((after, -1.0), (self.mesh.before[after], 1.0)):
-            side = self.fields.gradient(element, np.full(len(end), xi)).stress(material) / 2
-            result[:, end] = side if xi < 0 else result[:, end] + side
-        for field, factor in self._volume(at.points):
+        sides = ((at.node[end], -1.0), (self.mesh.before[at.node[end]], 1.0))
+        both = [self.stress_on(element, np.full(len(end), xi), at.points[end]) for element, xi in sides]
+        result[:, end] = (both[0] + both[1]) / 2
+        return result
+
+    def stress_on(self, element: IntArray, xi: Array, points: Array) -> Array:
+        """σxx, σyy, σxy (3, k, q) [p] on the boundary at ξ (k,) of elements (k,), where points (k, 2) [L] are."""
+        return self.fields.gradient(element, xi).stress(self.problem.material) + self._volume_stress(points)
+
+    def _volume_stress(self, points: Array) -> Array:
+        """σxx, σyy, σxy (3, k, q) [p] of the particular solutions."""
+        result = np.zeros((3, len(points), len(self.factors)))
+        for field, factor in self._volume(points):
             xx, yy, xy = field.stress[:, 0, 0], field.stress[:, 1, 1], field.stress[:, 0, 1]
             result += np.stack([xx, yy, xy])[..., None] * factor
         return result
@@ -179,7 +189,8 @@ class StressField:
         on = distance <= ON_BOUNDARY * size
         some = np.flatnonzero(near & ~on)
         out = self._beyond_curve(points[some], element[some], xi[some])
-        on[some] |= (abs(out) <= ON_BOUNDARY * size) | (~inside[some] & (out <= NEARLY * size))
+        on[some] = (abs(out) <= ON_BOUNDARY * size) | (~inside[some] & (out <= NEARLY * size))
+        inside[some] &= out <= NEARLY * size
         inside &= ~on
         at_end = np.where(xi < 0, mesh.elements[element, 0], mesh.elements[element, 2])
         node = np.where(on & (np.hypot(*(points - mesh.nodes[at_end]).T) <= NEARLY * size), at_end, -1)
