@@ -2,6 +2,8 @@
 from .analysis.compare import compare as compare
 from .analysis.follow import follow as follow
 from .analysis.follow import sensitivities as sensitivities
+from .analysis.largest_stress import LargestStresses as LargestStresses
+from .analysis.largest_stress import StressPeak as StressPeak
 from .analysis.load_cases import CaseResults as CaseResults
 from .analysis.load_cases import solve_cases as solve_cases
 from .analysis.result import Result as Result

@@ -64,7 +64,10 @@ class BodyStress:
 
     def stress(self, points: object) -> Stress:
         """Stress at points (k, 2)."""
-        at = self._located(points)
+        return self.at(self._located(points))
+
+    def at(self, at: Located) -> Stress:
+        """Stress where points are; not a number outside the body."""
         kind = kinds(self.field, at, self.singular)
         inside = self.field.stress(at)
         zz = self.field.out_of_plane(inside, at.points)[:, 0]
@@ -84,31 +87,62 @@ class BodyStress:
 
     def along(self, edge: str) -> EdgeStress:
         """Stress along an edge."""
-        mesh = self.field.mesh
-        own = np.flatnonzero(mesh.edge == mesh.edge_names.index(edge))
-        points, normals, traction = mesh.nodes[mesh.elements[own]], mesh.normals[own], self.traction[own]
+        mesh, own = self.field.mesh, self._elements(edge)
+        normals, traction = mesh.normals[own], self.traction[own]
         hoop, stress = self._on(np.repeat(own, 3), np.tile(reference_element.NODES, len(own)))
-        infinite = np.zeros((len(own), 3), bool)
-        infinite[:, 0], infinite[:, 2] = self.singular[own], self.singular[mesh.elements[own, 2]]
-        halves = half_lengths(mesh)[own]
-        starts = np.append(0.0, np.cumsum(halves.sum(axis=1))[:-1])
-        arc = starts[:, None] + np.column_stack([np.zeros(len(own)), halves[:, 0], halves.sum(axis=1)])
-        peak = self._peak(own, infinite[:, 0] | infinite[:, 2])
-        at = None if peak is None else _between(points[peak.number], peak.xi)
-        along = None if peak is None else float(_between(arc[peak.number], peak.xi))
+        infinite, points = self._infinite(own), mesh.nodes[mesh.elements[own]]
+        peak = self.edge_peak(edge)
         return EdgeStress(
             edge=edge,
             points=points,
-            arc=arc,
+            arc=self._arc(own),
             hoop=np.where(infinite, np.nan, hoop.reshape(-1, 3)),
             pressure=-np.sum(traction * normals, axis=2),
             shear=traction[..., 1] * normals[..., 0] - traction[..., 0] * normals[..., 1],
             von_mises=np.where(infinite, np.nan, stress.von_mises.reshape(-1, 3)),
             peak=None if peak is None else peak.value,
-            peak_at=None if at is None else (float(at[0]), float(at[1])),
-            peak_arc=along,
+            peak_at=None if peak is None else peak.point,
+            peak_arc=None if peak is None else peak.arc,
             singular=points[infinite],
         )
+
+    def edge_peak(self, edge: str, *, von_mises: bool = False) -> "EdgePeak | None":
+        """The hoop stress of the largest magnitude along an edge, or the equivalent stress; None as in `EdgeStress`."""
+        own = self._elements(edge)
+        ends = self._infinite(own)
+        infinite: BoolArray = ends[:, 0] | ends[:, 2]
+        number = np.flatnonzero(~infinite)
+        if not len(number):
+            return None
+        n, xi, value = self._largest(own, number, np.linspace(-1, 1, PEAK_SAMPLES), von_mises)
+        beside = n + (int(xi) if abs(xi) == 1 else 0)
+        if 0 <= beside < len(own) and infinite[beside]:
+            return None
+        width = 2 / (PEAK_SAMPLES - 1)
+        for _ in range(PEAK_STEPS):
+            near = np.linspace(max(-1.0, xi - width), min(1.0, xi + width), PEAK_SAMPLES)
+            n, xi, value = self._largest(own, np.array([n]), near, von_mises)
+            width = near[1] - near[0]
+        shapes = reference_element.values(np.array(xi))
+        mesh = self.field.mesh
+        x, y = (shapes @ mesh.nodes[mesh.elements[own[n]]]).tolist()
+        return EdgePeak(value, (x, y), float(shapes @ self._arc(own)[n]))
+
+    def _elements(self, edge: str) -> IntArray:
+        """Elements of an edge in order."""
+        return np.flatnonzero(self.field.mesh.edge == self.field.mesh.edge_names.index(edge))
+
+    def _infinite(self, own: IntArray) -> BoolArray:
+        """Whether stress is infinite at the nodes (m, 3) of elements."""
+        infinite = np.zeros((len(own), 3), bool)
+        infinite[:, 0], infinite[:, 2] = self.singular[own], self.singular[self.field.mesh.elements[own, 2]]
+        return infinite
+
+    def _arc(self, own: IntArray) -> Array:
+        """Arc length (m, 3) [L] of the nodes of all elements of an edge from its start."""
+        halves = half_lengths(self.field.mesh)[own]
+        starts = np.append(0.0, np.cumsum(halves.sum(axis=1))[:-1])
+        return starts[:, None] + np.column_stack([np.zeros(len(own)), halves[:, 0], halves.sum(axis=1)])
 
     def _on(self, element: IntArray, xi: Array) -> tuple[Array, Stress]:
         """Hoop stress (k,) [p] and stress at ξ (k,) of elements (k,)."""
@@ -124,39 +158,20 @@ class BodyStress:
             points=points, components=stress[..., 0].T, zz=zz, kind=kind
         )
 
-    def _peak(self, own: IntArray, infinite: BoolArray) -> "_Peak | None":
-        """The largest hoop stress on elements in their order; None if it is next to an element with an infinite one."""
-        number = np.flatnonzero(~infinite)
-        if not len(number):
-            return None
-        peak = self._largest(own, number, np.linspace(-1, 1, PEAK_SAMPLES))
-        beside = peak.number + (int(peak.xi) if abs(peak.xi) == 1 else 0)
-        if 0 <= beside < len(own) and infinite[beside]:
-            return None
-        width = 2 / (PEAK_SAMPLES - 1)
-        for _ in range(PEAK_STEPS):
-            xi = np.linspace(max(-1.0, peak.xi - width), min(1.0, peak.xi + width), PEAK_SAMPLES)
-            peak, width = self._largest(own, np.array([peak.number]), xi), xi[1] - xi[0]
-        return peak
-
-    def _largest(self, own: IntArray, number: IntArray, xi: Array) -> "_Peak":
-        """The largest hoop stress at ξ (s,) of some of the elements."""
-        hoop, _ = self._on(np.repeat(own[number], len(xi)), np.tile(xi, len(number)))
-        best = int(np.argmax(abs(hoop)))
-        return _Peak(int(number[best // len(xi)]), float(xi[best % len(xi)]), float(hoop[best]))
+    def _largest(self, own: IntArray, number: IntArray, xi: Array, von_mises: bool) -> tuple[int, float, float]:
+        """Number of the element and ξ of the largest value at ξ (s,) of some of the elements, and this value."""
+        hoop, stress = self._on(np.repeat(own[number], len(xi)), np.tile(xi, len(number)))
+        values = stress.von_mises if von_mises else hoop
+        best = int(np.argmax(abs(values)))
+        return int(number[best // len(xi)]), float(xi[best % len(xi)]), float(values[best])
 
 
-class _Peak(NamedTuple):
-    """Number of the element among those of the edge, ξ and hoop stress [p]."""
+class EdgePeak(NamedTuple):
+    """The largest stress along an edge [p], its place [L], and the arc length to it from the start of the edge [L]."""
 
-    number: int
-    xi: float
     value: float
-
-
-def _between(values: Array, xi: float) -> Array:
-    """Values (3, …) at the nodes of an element, at ξ."""
-    return np.tensordot(reference_element.values(np.array(xi)), values, axes=1)
+    point: Pair
+    arc: float
 
 
 def ensure_in_body(field: StressField, at: Located) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bemcontact.analysis.body_stress import BodyStress
+from bemcontact.analysis.largest_stress import LargestStresses, largest_stresses
 from bemcontact.analysis.stress import EdgeStress, Stress
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy, together
@@ -231,6 +232,17 @@ class Result(Recorded):
             The result is that of a condensed problem, which has no boundary.
         """
         return {edge: self._body_stress.along(edge) for edge in self._body_stress.field.mesh.edge_names}
+
+    def largest_stresses(self) -> LargestStresses:
+        """Look for the largest stresses: below each contact, inside the body and along its edges.
+
+        Raises
+        ------
+        ProblemError
+            The result is that of a condensed problem, which has no body.
+        """
+        pressure, _ = self.contact_fields()
+        return largest_stresses(self._body_stress, pressure[:, 1] > 0)
 
     def contact_fields(self) -> tuple[Array, Array]:
         """Pressure (m, 3) [p] and gap (m, 3) [L] at the nodes of each boundary element, of the zone of its edge.
