@@ -71,6 +71,19 @@ def wedge_exponents(start: float, angle: float, faces: tuple[Face, Face], poisso
     return tuple(1 - power for power in _roots(wedge, GRID) if _presses(wedge, power))
 
 
+@lru_cache(maxsize=256)
+def stress_is_infinite(start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float) -> bool:
+    """Whether stress grows without bound at the tip of a wedge, unless loads happen not to excite it.
+
+    Parameters are those of `wedge_exponents`. Between a clamped face and a free one λ may be complex; its real part is
+    below one if sin²ω > (κ+1)/4, or ω > π/2 (Williams 1952).
+    """
+    clamped, free = ((held, held) in [face.held for face in faces] for held in (True, False))
+    if clamped and free:
+        return angle > np.pi / 2 or np.sin(angle) ** 2 > 1 - poisson_ratio
+    return bool(_roots((start, angle, faces, poisson_ratio), GRID))
+
+
 def _roots(wedge: "Wedge", grid: Array) -> list[float]:
     """Values of λ, between those of a grid, where the equations are singular."""
     sizes = _singular(wedge, grid)

@@ -1,10 +1,14 @@
 """The result of a contact problem: its solution and all quantities recomputed from it."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from bemcontact.analysis.body_stress import BodyStress
+from bemcontact.analysis.largest_stress import LargestStresses, largest_stresses
+from bemcontact.analysis.stress import EdgeStress, Stress
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy, together
 from bemcontact.assessment.certificate import Certificate
@@ -174,6 +178,71 @@ class Result(Recorded):
     def equilibrium_slack(self) -> float | None:
         """Imbalance of the discrete equations relative to the loads; None without a boundary."""
         return None if self.boundary is None else self.boundary.equilibrium_slack
+
+    @cached_property
+    def _body_stress(self) -> BodyStress:
+        """The stress in the body; `ProblemError` without a boundary."""
+        pressure, _ = self.contact_fields()
+        assert self.problem is not None
+        assert self.boundary is not None
+        known = [item for item in self.accuracy.bars if item.quantity == "intensity"]
+        infinite = [item.at for item in (*self.accuracy.infinite_peaks, *known) if item.at is not None]
+        return BodyStress.of(self.problem, self.boundary, pressure[:, 1] > 0, infinite)
+
+    def stress(self, points: ArrayLike) -> Stress:
+        """Stress at points inside the body and on its boundary.
+
+        Parameters
+        ----------
+        points : (k, 2) places (x, y) in the undeformed body [L]
+
+        Returns
+        -------
+        Stress
+            Components, principal stresses, equivalent stresses [p], and what kind of place each point is. At a corner
+            they are the mean of those on either side. Where stress is infinite it is not a number.
+
+        Raises
+        ------
+        ProblemError
+            A point is outside the body, or the result is that of a condensed problem, which has no body.
+        """
+        return self._body_stress.stress(points)
+
+    def displacement(self, points: ArrayLike) -> Array:
+        """Displacement (k, 2) [L] at points inside the body and on its boundary.
+
+        Parameters
+        ----------
+        points : (k, 2) places (x, y) in the undeformed body [L]
+
+        Raises
+        ------
+        ProblemError
+            As of `stress`.
+        """
+        return self._body_stress.displacement(points)
+
+    def boundary_stress(self) -> dict[str, EdgeStress]:
+        """Stress along each edge by its name: hoop stress with its peak, pressure, shear.
+
+        Raises
+        ------
+        ProblemError
+            The result is that of a condensed problem, which has no boundary.
+        """
+        return {edge: self._body_stress.along(edge) for edge in self._body_stress.field.mesh.edge_names}
+
+    def largest_stresses(self) -> LargestStresses:
+        """Look for the largest stresses: below each contact, inside the body and along its edges.
+
+        Raises
+        ------
+        ProblemError
+            The result is that of a condensed problem, which has no body.
+        """
+        pressure, _ = self.contact_fields()
+        return largest_stresses(self._body_stress, pressure[:, 1] > 0)
 
     def contact_fields(self) -> tuple[Array, Array]:
         """Pressure (m, 3) [p] and gap (m, 3) [L] at the nodes of each boundary element, of the zone of its edge.

@@ -6,6 +6,7 @@ equilibrium is exact: ℓ = J R, and the load is the work of the applied loads i
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 
 import numpy as np
 
@@ -205,6 +206,22 @@ def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes
 def boundary_change(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> tuple[Array, Array]:
     """Displacement (m, 3, 2) [L] and traction (m, 3, 2) [p] of a pressure (n,) and amplitudes (k,) without loads."""
     return _boundary(condensation, pressure, rigid_amplitudes, np.zeros_like(condensation.factors))
+
+
+def boundary_columns(condensation: Condensation) -> tuple[Array, Array]:
+    """Displacement (N, 2, 1 + c + n) [L] and traction (m, 3, 2, …) [p] of each loading and each unit pressure alone.
+
+    Their sum with factors and pressures is the state of the boundary but for a rigid motion of the body.
+    """
+    system, loadings, points = condensation.system, condensation.body.loadings, condensation.body.points
+    scale = np.append(np.ones(len(loadings)), np.full(len(points), 1 / system.stress))
+    z = condensation.response.combined(np.diag(scale)).T
+    states = [system.fields(own, loading) for own, loading in zip_longest(z, loadings)]
+    displacement, traction = (np.stack(parts, axis=-1) for parts in zip(*states, strict=True))
+    for axis, normal in enumerate(points.normals.T):
+        column = len(loadings) + points.point
+        np.add.at(traction[:, :, axis], (points.element, points.local, column), normal[points.point])
+    return displacement, traction
 
 
 def _boundary(

@@ -7,6 +7,7 @@ effective one.
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,19 +41,41 @@ class ParticularSolution:
     magnitude: float = 0.0
 
 
+class VolumeField(NamedTuple):
+    """A particular solution at points: displacement (…, 2) [L] and stress (…, 2, 2) [p]."""
+
+    displacement: Array
+    stress: Array
+
+
 def particular_solution(loads: Loads, material: Material, mesh: Mesh) -> ParticularSolution:
-    """Sum the particular solutions of all volume loads."""
+    """Sum the particular solutions of all volume loads on the boundary."""
+    field = particular_field(loads, material, mesh, mesh.nodes)
+    magnitude = 0.0
+    if loads.gravity:
+        magnitude += _area(mesh) * float(np.hypot(*_weight(loads.gravity)))
+    if loads.centrifugal:
+        farthest = np.sum((mesh.nodes - np.array(loads.centrifugal.center)) ** 2, axis=1).max()
+        magnitude += _spin(loads.centrifugal) * _area(mesh) * float(np.sqrt(farthest))
+    return ParticularSolution(
+        displacement=field.displacement,
+        traction=np.einsum("mkij,mkj->mki", field.stress[mesh.elements], mesh.normals),
+        magnitude=magnitude,
+    )
+
+
+def particular_field(loads: Loads, material: Material, mesh: Mesh, points: Array) -> VolumeField:
+    """Sum the particular solutions of all volume loads at points (…, 2) [L] of a body with this mesh."""
     parts = []
     if loads.gravity:
-        parts.append(_gravity(loads.gravity, material, mesh))
+        parts.append(_gravity(loads.gravity, material, points - mesh.centroid))
     if loads.centrifugal:
-        parts.append(_centrifugal(loads.centrifugal, material, mesh))
+        parts.append(_centrifugal(loads.centrifugal, material, points - np.array(loads.centrifugal.center)))
     if loads.temperature:
-        parts.append(_thermal(loads.temperature, material, mesh))
-    return ParticularSolution(
-        displacement=sum((part.displacement for part in parts), np.zeros_like(mesh.nodes)),
-        traction=sum((part.traction for part in parts), np.zeros((*mesh.elements.shape, 2))),
-        magnitude=sum(part.magnitude for part in parts),
+        parts.append(_thermal(loads.temperature, material, mesh.centroid, points - mesh.centroid))
+    return VolumeField(
+        displacement=sum((part.displacement for part in parts), np.zeros_like(points)),
+        stress=sum((part.stress for part in parts), np.zeros((*points.shape, 2))),
     )
 
 
@@ -86,56 +109,48 @@ def _spin(centrifugal: Centrifugal) -> float:
     return centrifugal.density * centrifugal.angular_velocity**2
 
 
-def _gravity(gravity: Gravity, material: Material, mesh: Mesh) -> ParticularSolution:
-    """u_p = α r² b with G α (4 + 2/(1-2ν)) = -1, for the constant body force b; r from the middle of the body."""
-    b = gravity.density * np.array(gravity.acceleration)
+def _weight(gravity: Gravity) -> Array:
+    """ρg (2,), the body force."""
+    return gravity.density * np.array(gravity.acceleration)
+
+
+def _gravity(gravity: Gravity, material: Material, x: Array) -> VolumeField:
+    """u_p = α r² b with G α (4 + 2/(1-2ν)) = -1, for the constant body force b; x (…, 2) from the middle."""
+    b = _weight(gravity)
     nu = material.effective_poisson_ratio
     alpha = -(1 - 2 * nu) / (2 * material.shear_modulus * (3 - 4 * nu))
-    x = mesh.nodes - mesh.centroid
-    gradient = 2 * alpha * np.einsum("i,mkj->mkij", b, x[mesh.elements])
-    return ParticularSolution(
-        displacement=alpha * np.sum(x * x, axis=1)[:, None] * b,
-        traction=_traction(gradient, material, mesh),
-        magnitude=_area(mesh) * float(np.hypot(*b)),
-    )
+    gradient = 2 * alpha * np.einsum("i,...j->...ij", b, x)
+    return VolumeField(alpha * np.sum(x * x, axis=-1)[..., None] * b, _stress(gradient, material))
 
 
-def _centrifugal(centrifugal: Centrifugal, material: Material, mesh: Mesh) -> ParticularSolution:
-    """u_p = γ r² x with 16 G γ (1-ν)/(1-2ν) = -ρω², x and r from the axis of rotation."""
-    density = _spin(centrifugal)
+def _centrifugal(centrifugal: Centrifugal, material: Material, x: Array) -> VolumeField:
+    """u_p = γ r² x with 16 G γ (1-ν)/(1-2ν) = -ρω², x (…, 2) and r from the axis of rotation."""
     nu = material.effective_poisson_ratio
-    gamma = -density * (1 - 2 * nu) / (16 * material.shear_modulus * (1 - nu))
-    axis = np.array(centrifugal.center)
-    x = mesh.nodes - axis
-    r2 = np.sum(x * x, axis=1)
-    at = x[mesh.elements]
-    gradient = gamma * (r2[mesh.elements][..., None, None] * np.eye(2) + 2 * np.einsum("mki,mkj->mkij", at, at))
-    return ParticularSolution(
-        displacement=gamma * r2[:, None] * x,
-        traction=_traction(gradient, material, mesh),
-        magnitude=density * _area(mesh) * float(np.sqrt(r2.max())),
-    )
+    gamma = -_spin(centrifugal) * (1 - 2 * nu) / (16 * material.shear_modulus * (1 - nu))
+    r2 = np.sum(x * x, axis=-1)
+    gradient = gamma * (r2[..., None, None] * np.eye(2) + 2 * np.einsum("...i,...j->...ij", x, x))
+    return VolumeField(gamma * r2[..., None] * x, _stress(gradient, material))
 
 
-def _thermal(temperature: Temperature, material: Material, mesh: Mesh) -> ParticularSolution:
-    """u_p + i v_p = α' (T0 z + (a - ib) z²/2), free of stress, for T = T0 + a x + b y; α' = (1+ν) α in plane strain."""
+def _thermal(temperature: Temperature, material: Material, middle: Array, x: Array) -> VolumeField:
+    """u_p + i v_p = α' (T0 z + (a - ib) z²/2), free of stress, for T = T0 + a x + b y; α' = (1+ν) α in plane strain.
+
+    x (…, 2) is from the middle of the body.
+    """
     change, nu = temperature.change, material.poisson_ratio
     expansion = temperature.expansion * (1 + nu if material.state == "plane_strain" else 1)
-    x = mesh.nodes - mesh.centroid
-    z = x[:, 0] + 1j * x[:, 1]
-    at_center = change.at(mesh.centroid[None, :])[0]
+    z = x[..., 0] + 1j * x[..., 1]
+    at_center = change.at(middle[None, :])[0]
     w = expansion * (at_center * z + (change.x - 1j * change.y) * z * z / 2)
-    return ParticularSolution(
-        displacement=np.column_stack([w.real, w.imag]), traction=np.zeros((*mesh.elements.shape, 2))
-    )
+    return VolumeField(np.stack([w.real, w.imag], axis=-1), np.zeros((*x.shape, 2)))
 
 
-def _traction(gradient: Array, material: Material, mesh: Mesh) -> Array:
-    """Hooke's law, σ = G (∇u + ∇uᵀ) + λ div u, and t = σ n, from ∇u (m, 3, 2, 2)."""
+def _stress(gradient: Array, material: Material) -> Array:
+    """Hooke's law, σ = G (∇u + ∇uᵀ) + λ div u, from ∇u (…, 2, 2)."""
     G, nu = material.shear_modulus, material.effective_poisson_ratio
     strain = gradient + np.swapaxes(gradient, -1, -2)
     spherical = 2 * G * nu / (1 - 2 * nu) * np.trace(gradient, axis1=-2, axis2=-1)[..., None, None] * np.eye(2)
-    return np.einsum("mkij,mkj->mki", G * strain + spherical, mesh.normals)
+    return G * strain + spherical
 
 
 def _area(mesh: Mesh) -> float:

@@ -47,6 +47,8 @@ PATH = bemcontact.load_path(BODY.with_factors({"wind": 0}), BODY.with_factors({"
 DESIGN = bemcontact.design_gap(CONTACT, Relief(lower=0.0, upper=0.1))
 RESULT = bemcontact.solve(CONTACT)
 FREE = bemcontact.sensitivities(CONTACT, ["initial_gap[0]"])
+SOLVED = bemcontact.solve(PROBLEM, accuracy=None)
+OPERATOR = bemcontact.stress_operator(SOLVED, [[1, 0.5]])
 P, ONES = RESULT.solution.pressure, np.ones(4)
 
 
@@ -60,6 +62,10 @@ CALLS: dict[str, Call] = {
     "load": (bemcontact.load, {"path": "no such file.yaml", "overrides": (), "variant": None}),
     "loads": (bemcontact.loads, {"text": "a: 1", "name": "text", "overrides": (), "variant": None}),
     "condense": (bemcontact.condense, {"problem": PROBLEM}),
+    "stress_operator": (bemcontact.stress_operator, {"problem": PROBLEM, "points": [[1, 0.5]]}),
+    "StressOperator.at": (OPERATOR.at, {"pressure": np.ones(5), "amplitudes": None}),
+    "Result.stress": (SOLVED.stress, {"points": [[1, 0.5]]}),
+    "Result.displacement": (SOLVED.displacement, {"points": [[1, 0.5]]}),
     "solve": (
         bemcontact.solve,
         {
@@ -264,7 +270,8 @@ def test_all_public_functions_are_called():
     functions = {name for name in bemcontact.__all__ if inspect.isfunction(getattr(bemcontact, name))}
     assert functions - {"schema"} <= {name.partition(",")[0] for name in CALLS}
     called = {name.partition(",")[0].rpartition(".")[2] for name in CALLS}
-    for kind in (CondensedContact, bemcontact.LoadPath, bemcontact.ContactModel, bemcontact.GapDesign):
+    kinds = (CondensedContact, bemcontact.LoadPath, bemcontact.ContactModel, bemcontact.GapDesign)
+    for kind in (*kinds, bemcontact.Result, bemcontact.StressOperator):
         methods = {name for name, item in vars(kind).items() if inspect.isfunction(item) and not name.startswith("_")}
         with_arguments = {name for name in methods if len(inspect.signature(getattr(kind, name)).parameters) > 1}
         assert with_arguments - {"save", "notes_between"} <= called, kind

@@ -1,0 +1,241 @@
+"""Stress and displacement of one state of a body: at its points and along its edges, and where stress is infinite."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.adaptivity.wedge_exponents import FREE, Face, contact_face, stress_is_infinite
+from bemcontact.analysis.stress import EdgeStress, PointKind, Stress
+from bemcontact.arrays import Array, BoolArray, IntArray, real_array
+from bemcontact.bem import reference_element
+from bemcontact.bem.contact_points import half_lengths
+from bemcontact.bem.mesh import CORNER, BoundaryState, build
+from bemcontact.bem.stress_field import NEARLY, Located, StressField
+from bemcontact.errors import ProblemError
+from bemcontact.problem.problem import Problem
+from bemcontact.problem.rigid_surface import DeflectedContour
+from bemcontact.serialization import Pair
+
+FLAT = 1e-6
+"""Angle of a corner that is none, and jump of shear over the largest traction that is none."""
+PEAK_SAMPLES, PEAK_STEPS = 17, 4
+"""Places on an element among which the largest stress is looked for, and how often between smaller bounds."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BodyStress:
+    """The stress of one state of a body, with the places where it is infinite.
+
+    Parameters
+    ----------
+    field : of one state
+    traction : (m, 3, 2) [p]
+    singular : (m,) whether stress is infinite where an element starts
+    """
+
+    field: StressField
+    traction: Array
+    singular: BoolArray
+
+    @classmethod
+    def of(cls, problem: Problem, boundary: BoundaryState, pressed: BoolArray, infinite: Sequence[Pair]) -> Self:
+        """Read the boundary of a problem on its mesh.
+
+        `pressed` (m,) are the elements that touch; at the places `infinite`, pressure is known to be so.
+        """
+        mesh, factors = build(problem), problem.factors()
+        displacement = np.zeros((len(mesh.nodes), 2))
+        displacement[mesh.elements] = boundary.displacement
+        field = StressField.of(
+            problem,
+            mesh,
+            displacement[..., None],
+            boundary.traction[..., None],
+            [problem.loads, *(case.loads for case in problem.load_cases.values())],
+            np.array([[1.0, *(factors.get(case, 0.0) for case in problem.load_cases)]]),
+        )
+        singular = infinite_starts(field, pressed) | _sheared(field, boundary.traction)
+        for place in infinite:
+            singular |= np.hypot(*(mesh.nodes[: len(singular)] - place).T) <= NEARLY * mesh.size
+        return cls(field=field, traction=boundary.traction, singular=singular)
+
+    def stress(self, points: object) -> Stress:
+        """Stress at points (k, 2)."""
+        return self.at(self._located(points))
+
+    def at(self, at: Located) -> Stress:
+        """Stress where points are; not a number outside the body."""
+        kind = kinds(self.field, at, self.singular)
+        inside = self.field.stress(at)
+        zz = self.field.out_of_plane(inside, at.points)[:, 0]
+        infinite = kind == PointKind.SINGULAR
+        components = np.where(infinite[:, None], np.nan, inside[..., 0].T)
+        return Stress(points=at.points, components=components, zz=np.where(infinite, np.nan, zz), kind=kind)
+
+    def displacement(self, points: object) -> Array:
+        """Displacement (k, 2) [L] at points (k, 2)."""
+        return self.field.displacement(self._located(points))[..., 0]
+
+    def _located(self, points: object) -> Located:
+        """Where points are; `ProblemError` if one is outside."""
+        at = self.field.locate(real_array(points, "points", (None, 2)))
+        ensure_in_body(self.field, at)
+        return at
+
+    def along(self, edge: str) -> EdgeStress:
+        """Stress along an edge."""
+        mesh, own = self.field.mesh, self._elements(edge)
+        normals, traction = mesh.normals[own], self.traction[own]
+        hoop, stress = self._on(np.repeat(own, 3), np.tile(reference_element.NODES, len(own)))
+        infinite, points = self._infinite(own), mesh.nodes[mesh.elements[own]]
+        peak = self.edge_peak(edge)
+        return EdgeStress(
+            edge=edge,
+            points=points,
+            arc=self._arc(own),
+            hoop=np.where(infinite, np.nan, hoop.reshape(-1, 3)),
+            pressure=-np.sum(traction * normals, axis=2),
+            shear=traction[..., 1] * normals[..., 0] - traction[..., 0] * normals[..., 1],
+            von_mises=np.where(infinite, np.nan, stress.von_mises.reshape(-1, 3)),
+            peak=None if peak is None else peak.value,
+            peak_at=None if peak is None else peak.point,
+            peak_arc=None if peak is None else peak.arc,
+            singular=points[infinite],
+        )
+
+    def edge_peak(self, edge: str, *, von_mises: bool = False) -> "EdgePeak | None":
+        """The hoop stress of the largest magnitude along an edge, or the equivalent stress; None as in `EdgeStress`."""
+        own = self._elements(edge)
+        ends = self._infinite(own)
+        infinite: BoolArray = ends[:, 0] | ends[:, 2]
+        number = np.flatnonzero(~infinite)
+        if not len(number):
+            return None
+        n, xi, value = self._largest(own, number, np.linspace(-1, 1, PEAK_SAMPLES), von_mises)
+        beside = n + (int(xi) if abs(xi) == 1 else 0)
+        if 0 <= beside < len(own) and infinite[beside]:
+            return None
+        width = 2 / (PEAK_SAMPLES - 1)
+        for _ in range(PEAK_STEPS):
+            near = np.linspace(max(-1.0, xi - width), min(1.0, xi + width), PEAK_SAMPLES)
+            n, xi, value = self._largest(own, np.array([n]), near, von_mises)
+            width = near[1] - near[0]
+        shapes = reference_element.values(np.array(xi))
+        mesh = self.field.mesh
+        x, y = (shapes @ mesh.nodes[mesh.elements[own[n]]]).tolist()
+        return EdgePeak(value, (x, y), float(shapes @ self._arc(own)[n]))
+
+    def _elements(self, edge: str) -> IntArray:
+        """Elements of an edge in order."""
+        return np.flatnonzero(self.field.mesh.edge == self.field.mesh.edge_names.index(edge))
+
+    def _infinite(self, own: IntArray) -> BoolArray:
+        """Whether stress is infinite at the nodes (m, 3) of elements."""
+        infinite = np.zeros((len(own), 3), bool)
+        infinite[:, 0], infinite[:, 2] = self.singular[own], self.singular[self.field.mesh.elements[own, 2]]
+        return infinite
+
+    def _arc(self, own: IntArray) -> Array:
+        """Arc length (m, 3) [L] of the nodes of all elements of an edge from its start."""
+        halves = half_lengths(self.field.mesh)[own]
+        starts = np.append(0.0, np.cumsum(halves.sum(axis=1))[:-1])
+        return starts[:, None] + np.column_stack([np.zeros(len(own)), halves[:, 0], halves.sum(axis=1)])
+
+    def _on(self, element: IntArray, xi: Array) -> tuple[Array, Stress]:
+        """Hoop stress (k,) [p] and stress at ξ (k,) of elements (k,)."""
+        mesh = self.field.mesh
+        shapes, slopes = reference_element.values(xi), reference_element.derivatives(xi)
+        nodes = mesh.nodes[mesh.elements[element]]
+        points, tangent = (np.einsum("kl,klx->kx", part, nodes) for part in (shapes, slopes))
+        stress = self.field.stress_on(element, xi, points)
+        (x, y), (xx, yy, xy) = tangent.T / np.hypot(*tangent.T), stress[..., 0]
+        zz = self.field.out_of_plane(stress, points)[:, 0]
+        kind = np.full(len(xi), PointKind.BOUNDARY.value)
+        return xx * x * x + yy * y * y + 2 * xy * x * y, Stress(
+            points=points, components=stress[..., 0].T, zz=zz, kind=kind
+        )
+
+    def _largest(self, own: IntArray, number: IntArray, xi: Array, von_mises: bool) -> tuple[int, float, float]:
+        """Number of the element and ξ of the largest value at ξ (s,) of some of the elements, and this value."""
+        hoop, stress = self._on(np.repeat(own[number], len(xi)), np.tile(xi, len(number)))
+        values = stress.von_mises if von_mises else hoop
+        best = int(np.argmax(abs(values)))
+        return int(number[best // len(xi)]), float(xi[best % len(xi)]), float(values[best])
+
+
+class EdgePeak(NamedTuple):
+    """The largest stress along an edge [p], its place [L], and the arc length to it from the start of the edge [L]."""
+
+    value: float
+    point: Pair
+    arc: float
+
+
+def ensure_in_body(field: StressField, at: Located) -> None:
+    """Refuse points outside of the body with a `ProblemError`."""
+    if not at.outside.any():
+        return
+    first, count = int(np.argmax(at.outside)), int(at.outside.sum())
+    (x, y), unit = at.points[first], field.problem.units.length
+    edge = field.mesh.edge_names[field.mesh.edge[at.element[first]]]
+    near = f", {at.distance[first]:.3g} {unit}".rstrip() + f" from '{edge}'" if np.isfinite(at.distance[first]) else ""
+    others = f"; {count} of the {len(at.points)} points are" if count > 1 else ""
+    raise ProblemError(
+        f"points[{first}] = ({x:.6g}, {y:.6g}) is outside the undeformed body{near}{others}; give points inside the "
+        "body or on its boundary, in coordinates before the deformation"
+    )
+
+
+def kinds(field: StressField, at: Located, singular: BoolArray) -> NDArray[np.str_]:
+    """The kind of each point (k,); `singular` (m,) says where an element starts at infinite stress."""
+    result = np.where(at.inside, PointKind.INSIDE.value, PointKind.BOUNDARY.value).astype("U8")
+    end = at.node >= 0
+    result[end & ~field.smooth[at.node]] = PointKind.CORNER.value
+    result[end & singular[at.node]] = PointKind.SINGULAR.value
+    return result
+
+
+def infinite_starts(field: StressField, pressed: BoolArray) -> BoolArray:
+    """Whether stress grows without bound where each element (m,) starts, by the wedge there and what holds its faces.
+
+    A surface that is the contour of a slit is curved without bound at its tip, and holds its faces there as none does.
+    """
+    problem, mesh = field.problem, field.mesh
+    slits = [name for name, zone in problem.contact_zones.items() if isinstance(zone.surface, DeflectedContour)]
+    pressed = pressed & ~np.isin(
+        mesh.edge, [mesh.edge_names.index(e) for name in slits for e in problem.edges_of(name)]
+    )
+    result = np.zeros(len(mesh.elements), bool)
+    for after in np.flatnonzero(~field.smooth).tolist():
+        before = int(mesh.before[after])
+        leaves, arrives = mesh.tangents[after, 0], mesh.tangents[before, 2]
+        if mesh.edge[after] != mesh.edge[before]:
+            leaves = problem.edge(mesh.edge_names[mesh.edge[after]]).directions(np.array([0.0]))[0]
+            arrives = problem.edge(mesh.edge_names[mesh.edge[before]]).directions(np.array([1.0]))[0]
+        start, end = (float(np.arctan2(y, x)) for x, y in (leaves, arrives))
+        angle = float(np.mod(end + np.pi - start, 2 * np.pi))
+        angle = 2 * np.pi if angle < FLAT else angle  # the faces of a crack
+        faces = _face(field, after, start, pressed), _face(field, before, end, pressed)
+        result[after] = stress_is_infinite(start, angle, faces, problem.material.effective_poisson_ratio)
+    return result
+
+
+def _face(field: StressField, element: int, direction: float, pressed: BoolArray) -> Face:
+    """What holds the face of a wedge with an element, from the direction of the boundary there."""
+    if pressed[element]:
+        return contact_face(np.exp(1j * (direction - np.pi / 2)))
+    condition = field.problem.conditions.get(field.mesh.edge_names[field.mesh.edge[element]])
+    given = () if condition is None else condition.displacement.given
+    return Face(1.0, ("x" in given, "y" in given)) if given else FREE
+
+
+def _sheared(field: StressField, traction: Array) -> BoolArray:
+    """Whether the shear on a straight boundary jumps where each element (m,) starts: stress there is a logarithm."""
+    mesh = field.mesh
+    tangents = mesh.tangents / mesh.jacobians[..., None]
+    shear = np.sum(traction * tangents, axis=2)
+    jump = abs(shear[:, 0] - shear[mesh.before, 2]) > FLAT * np.hypot(*np.moveaxis(traction, 2, 0)).max(initial=0.0)
+    return ~field.smooth & (abs(mesh.turns) < CORNER) & (abs(mesh.inner_angles - np.pi) < CORNER) & jump

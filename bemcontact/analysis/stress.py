@@ -1,0 +1,123 @@
+"""Stress at points of a body and along its edges, and what is derived from its components."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bemcontact.arrays import Array
+from bemcontact.checks.attributes import PLACE, WithHints, Words
+
+
+class PointKind(StrEnum):
+    """Where in a body a point is."""
+
+    INSIDE = "inside"
+    BOUNDARY = "boundary"
+    """On the boundary, where it and the conditions on it are smooth."""
+    CORNER = "corner"
+    """At a corner, or where conditions change: stresses are the mean of those on either side."""
+    SINGULAR = "singular"
+    """At a corner, an end of contact or a change of conditions where stress is infinite: not a number."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Stress(WithHints):
+    """Stress at k points of a body; tension is positive."""
+
+    _called: ClassVar[Words] = {
+        "points": PLACE,
+        "von_mises": ("mises", "equivalent", "effective", "equivalent_stress", "seqv"),
+        "max_shear": ("tresca", "maximum_shear", "shear"),
+        "components": ("sigma", "tensor", "xx", "yy", "xy", "sxx", "syy", "sxy", "stress", "stresses"),
+        "zz": ("szz", "out_of_plane"),
+    }
+
+    points: Array
+    """Points (k, 2) [L] of the undeformed body."""
+    components: Array
+    """σxx, σyy, σxy (k, 3) [p]."""
+    zz: Array
+    """σzz (k,) [p]: ν (σxx + σyy) - E α ΔT in plane strain, zero in plane stress."""
+    kind: NDArray[np.str_]
+    """A `PointKind` for each point: "inside", "boundary", "corner", or "singular", where stress is not a number."""
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return len(self.points)
+
+    def __repr__(self) -> str:
+        """One line: number of points, the largest stress, and what is singular."""
+        none = int((self.kind == PointKind.SINGULAR).sum())
+        finite = self.von_mises[np.isfinite(self.von_mises)]
+        largest = f", von Mises stress up to {finite.max():.6g}" if finite.size else ""
+        return f"<Stress at {len(self)} points{largest}{f', {none} of them singular' if none else ''}>"
+
+    @cached_property
+    def principal(self) -> Array:
+        """Principal stresses (k, 3) [p], the largest first, σzz among them."""
+        xx, yy, _ = self.components.T
+        mean, radius = (xx + yy) / 2, self.in_plane_shear
+        return np.sort(np.column_stack([mean + radius, mean - radius, self.zz]), axis=1)[:, ::-1]
+
+    @cached_property
+    def in_plane_shear(self) -> Array:
+        """Largest shear stress (k,) [p] in the plane: half the difference of the two principal stresses in it."""
+        xx, yy, xy = self.components.T
+        return np.hypot((xx - yy) / 2, xy)
+
+    @property
+    def max_shear(self) -> Array:
+        """Largest shear stress (k,) [p] in any direction: (σ1 - σ3)/2 of all three, half of Tresca's stress."""
+        return (self.principal[:, 0] - self.principal[:, 2]) / 2
+
+    @cached_property
+    def von_mises(self) -> Array:
+        """Von Mises's equivalent stress (k,) [p], of σzz too."""
+        xx, yy, xy = self.components.T
+        zz = self.zz
+        return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy * xy)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class EdgeStress(WithHints):
+    """Stress along an edge, at the three nodes of each of its m elements; where elements meet, from either side."""
+
+    _called: ClassVar[Words] = {
+        "hoop": ("tangential", "stress", "stresses", "components", "sigma"),
+        "peak": ("max", "maximum", "max_hoop", "value"),
+        "peak_at": PLACE,
+        "pressure": ("normal", "traction"),
+    }
+
+    edge: str
+    """Name of the edge."""
+    points: Array
+    """Nodes (m, 3, 2) [L]."""
+    arc: Array
+    """Arc length (m, 3) [L] from the start of the edge."""
+    hoop: Array
+    """Normal stress along the edge (m, 3) [p]; not a number where it is infinite."""
+    pressure: Array
+    """Pressure on the body (m, 3) [p]: minus the normal stress across the edge."""
+    shear: Array
+    """Traction along the edge (m, 3) [p], positive in its direction."""
+    von_mises: Array
+    """Von Mises's equivalent stress (m, 3) [p]."""
+    peak: float | None
+    """Hoop stress of the largest magnitude [p], also between nodes; None where it grows up to an infinite one."""
+    peak_at: tuple[float, float] | None
+    """Its place (x, y) [L]."""
+    peak_arc: float | None
+    """Arc length [L] from the start of the edge to it."""
+    singular: Array
+    """Ends of elements (s, 2) [L] where stress is infinite. The peak is away from their elements."""
+
+    def __repr__(self) -> str:
+        """One line: edge, elements, peak."""
+        peak = "no largest hoop stress" if self.peak is None else f"hoop stress {self.peak:.6g} at {self.peak_at}"
+        infinite = f", infinite at {len(self.singular)} places" if len(self.singular) else ""
+        return f"<EdgeStress of {self.edge!r}: {len(self.arc)} elements, {peak}{infinite}>"

@@ -1,0 +1,61 @@
+"""Integrals of the displacement gradient against multiple precision."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from bemcontact.bem import gradient_kernels, kernels, reference_element
+
+ELEMENTS = {
+    "straight": np.array([-0.5, 0, 0.5], complex),
+    "skewed middle node": np.array([-0.5, 0.1 + 0.05j, 0.5]),
+    "arc of 22.5 degrees": 2.5 * np.exp(1j * np.array([-1, 0, 1]) * np.pi / 16),
+    "arc of 90 degrees": np.exp(1j * np.array([-1, 0, 1]) * np.pi / 4),
+}
+FOOTS = (-1.05, -0.5, 1.0)
+
+
+def exact(tau: np.ndarray) -> np.ndarray:
+    """J and K (2, 3) with 20 digits, by quadrature between points that close in on the roots of the element map."""
+    with mp.workdps(20):
+        first, middle, last = (mp.mpc(complex(value)) for value in tau)
+        c = [(first + last) / 2 - middle, (last - first) / 2, middle]
+        root = mp.sqrt(c[1] ** 2 - 4 * c[0] * c[2])
+        roots = [(sign * root - c[1]) / (2 * c[0]) for sign in (1, -1)] if c[0] else [-c[2] / c[1]]
+        near = [mp.re(r) + side * abs(mp.im(r)) * 4**j for r in roots for side in (-1, 0, 1) for j in range(18)]
+        points = sorted({mp.mpf(-1), mp.mpf(1), *(x for x in near if -1 < x < 1)})
+
+        def integral(k: int, kernel) -> complex:
+            N = [mp.mpf(value) for value in reference_element.MONOMIALS[k]]
+            return complex(
+                mp.quad(lambda x: (N[0] + N[1] * x + N[2] * x * x) * kernel((c[0] * x + c[1]) * x + c[2]), points)
+            )
+
+        return np.array(
+            [
+                [integral(k, lambda t: 1 / t) for k in range(3)],
+                [integral(k, lambda t: t / mp.conj(t) ** 2) for k in range(3)],
+            ]
+        )
+
+
+@pytest.mark.parametrize("distance", [1e-9, 1e-4, 1e-2, 0.1, 0.3, 0.6])
+@pytest.mark.parametrize("name", ELEMENTS)
+def test_integrals(name: str, distance: float):
+    """At both sides of an element and beyond its ends; the bound is that of the Gauss rules, 1e-14 a few times."""
+    nodes = ELEMENTS[name]
+    for foot in FOOTS:
+        at = np.array([foot])
+        place, slope = (shapes(at) @ nodes for shapes in (reference_element.values, reference_element.derivatives))
+        for side in (1, -1):
+            tau = nodes[None] - (place + side * 1j * slope / abs(slope) * distance * abs(nodes[2] - nodes[0]))[:, None]
+            root = kernels.nearest_root(tau)
+            tier = int(
+                reference_element.tier(reference_element.bernstein_parameter(root.r), reference_element.RHO_OF_T)[0]
+            )
+            if tier < len(reference_element.ORDERS):
+                found = gradient_kernels.far_integrals(tau, int(reference_element.ORDERS[tier]))
+            else:
+                found = gradient_kernels.near_integrals(tau, root)
+            true = exact(tau[0])
+            assert abs(np.array([found.J[0], found.K[0]]) - true).max() < 2e-13 * max(1, abs(true).max())
