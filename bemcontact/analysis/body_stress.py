@@ -11,8 +11,8 @@ from bemcontact.adaptivity.wedge_exponents import FREE, Face, contact_face, stre
 from bemcontact.analysis.stress import EdgeStress, PointKind, Stress
 from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.bem import reference_element
-from bemcontact.bem.contact_points import half_lengths
 from bemcontact.bem.mesh import CORNER, BoundaryState, build
+from bemcontact.bem.outline import Outline
 from bemcontact.bem.stress_field import NEARLY, Located, StressField
 from bemcontact.errors import ProblemError
 from bemcontact.problem.problem import Problem
@@ -46,12 +46,12 @@ class BodyStress:
 
         `pressed` (m,) are the elements that touch; at the places `infinite`, pressure is known to be so.
         """
-        mesh, factors = build(problem), problem.factors()
+        outline, factors = Outline(problem=problem, mesh=build(problem)), problem.factors()
+        mesh = outline.mesh
         displacement = np.zeros((len(mesh.nodes), 2))
         displacement[mesh.elements] = boundary.displacement
         field = StressField.of(
-            problem,
-            mesh,
+            outline,
             displacement[..., None],
             boundary.traction[..., None],
             [problem.loads, *(case.loads for case in problem.load_cases.values())],
@@ -140,7 +140,7 @@ class BodyStress:
 
     def _arc(self, own: IntArray) -> Array:
         """Arc length (m, 3) [L] of the nodes of all elements of an edge from its start."""
-        halves = half_lengths(self.field.mesh)[own]
+        halves = self.field.mesh.halves[own]
         starts = np.append(0.0, np.cumsum(halves.sum(axis=1))[:-1])
         return starts[:, None] + np.column_stack([np.zeros(len(own)), halves[:, 0], halves.sum(axis=1)])
 

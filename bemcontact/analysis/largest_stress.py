@@ -15,7 +15,6 @@ from bemcontact.analysis.body_stress import BodyStress
 from bemcontact.analysis.stress import Stress
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
-from bemcontact.bem.contact_points import half_lengths
 from bemcontact.checks.attributes import PLACE, WithHints, Words
 
 FIRST, GROWTH = 0.3, 1.35
@@ -115,7 +114,7 @@ class _Search:
     def of(cls, body: BodyStress) -> "_Search":
         """Place the starts."""
         mesh = body.field.mesh
-        length = half_lengths(mesh).sum(axis=1)
+        length = mesh.lengths
         count = int(np.ceil(np.log(mesh.size / (FIRST * length.min())) / np.log(GROWTH)))
         depth = np.repeat(FIRST * length[:, None] * GROWTH ** np.arange(count), 2, axis=0)
         nodes, inward = mesh.nodes[mesh.elements[:, :2]].reshape(-1, 2), -mesh.normals[:, :2].reshape(-1, 2)

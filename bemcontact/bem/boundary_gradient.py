@@ -21,7 +21,6 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import reference_element
-from bemcontact.bem.contact_points import half_lengths
 from bemcontact.bem.mesh import Mesh
 from bemcontact.problem.material import Material
 
@@ -146,7 +145,7 @@ class _Stencils(NamedTuple):
     @classmethod
     def of(cls, mesh: Mesh, smooth: BoolArray) -> Self:
         """List the ends where two elements go on smoothly, and those where the boundary does so on one side."""
-        halves, before, after = half_lengths(mesh) / mesh.reference_length, mesh.before, mesh.elements[:, 2]
+        halves, before, after = mesh.halves / mesh.reference_length, mesh.before, mesh.elements[:, 2]
         joined = np.flatnonzero(smooth)
         length = halves.sum(axis=1)
         start = np.flatnonzero(~smooth & smooth[after] & (length[after] > SHORTER * length))

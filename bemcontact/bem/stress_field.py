@@ -10,11 +10,10 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.boundary_gradient import BoundaryFields
-from bemcontact.bem.contact_points import ROUGH, half_lengths, sides_of_nodes
 from bemcontact.bem.interior import Interior
 from bemcontact.bem.loading import VolumeField, particular_field
 from bemcontact.bem.mesh import CORNER, Mesh
-from bemcontact.bem.outline import Outline
+from bemcontact.bem.outline import ROUGH, Outline
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.nearest_places import surface_corners
 from bemcontact.problem.problem import Problem
@@ -50,15 +49,16 @@ class Located(NamedTuple):
     distance: Array
 
 
-def smooth_starts(problem: Problem, mesh: Mesh) -> BoolArray:
+def smooth_starts(outline: Outline) -> BoolArray:
     """Whether boundary and conditions go on smoothly where each element (m,) starts.
 
     They do so along an edge, but for corners of the surfaces that it may touch, and from one edge to the next one if
     these meet smoothly under the same conditions.
     """
+    problem, mesh = outline.problem, outline.mesh
     before, element = mesh.before, np.arange(len(mesh.elements))
     same = mesh.edge == mesh.edge[before]
-    normals = sides_of_nodes(problem, mesh, half_lengths(mesh))[0][element]
+    normals = outline.sides[0][element]
     level = np.hypot(*(normals[:, 1] - normals[:, 0]).T) < ROUGH
     what = [_conditions(problem, name) for name in mesh.edge_names]
     alike = np.array([[one == other for other in what] for one in what])[mesh.edge, mesh.edge[before]]
@@ -83,14 +83,13 @@ class StressField:
 
     Parameters
     ----------
-    problem, mesh : Problem and its mesh
+    outline : the curves under the elements
     smooth : (m,) `smooth_starts`
     fields : on the boundary, less the particular solutions
     loads : volume loads of the states, and factors of them (q, …)
     """
 
-    problem: Problem
-    mesh: Mesh
+    outline: Outline
     smooth: BoolArray
     fields: BoundaryFields
     loads: Sequence[Loads]
@@ -98,29 +97,34 @@ class StressField:
 
     @classmethod
     def of(
-        cls, problem: Problem, mesh: Mesh, displacement: Array, traction: Array, loads: Sequence[Loads], factors: Array
+        cls, outline: Outline, displacement: Array, traction: Array, loads: Sequence[Loads], factors: Array
     ) -> Self:
         """Read the boundary: displacement (N, 2, q) [L], traction (m, 3, 2, q) [p]."""
-        u, t = displacement, traction
+        problem, mesh, u, t = outline.problem, outline.mesh, displacement, traction
         for item, factor in zip(loads, factors.T, strict=True):
             if item != Loads():
                 field = particular_field(item, problem.material, mesh, mesh.nodes)
                 u = u - field.displacement[..., None] * factor
                 on_boundary = np.einsum("mkij,mkj->mki", field.stress[mesh.elements], mesh.normals)
                 t = t - on_boundary[..., None] * factor
-        smooth = smooth_starts(problem, mesh)
+        smooth = smooth_starts(outline)
         fields = BoundaryFields.of(mesh, problem.material, u, t, smooth)
-        return cls(problem=problem, mesh=mesh, smooth=smooth, fields=fields, loads=loads, factors=factors)
+        return cls(outline=outline, smooth=smooth, fields=fields, loads=loads, factors=factors)
+
+    @property
+    def problem(self) -> Problem:
+        """The problem."""
+        return self.outline.problem
+
+    @property
+    def mesh(self) -> Mesh:
+        """Its mesh."""
+        return self.outline.mesh
 
     @cached_property
     def interior(self) -> Interior:
         """The integrals over the boundary."""
         return Interior(mesh=self.mesh, poisson_ratio=self.problem.material.effective_poisson_ratio)
-
-    @cached_property
-    def outline(self) -> Outline:
-        """The curves under the elements."""
-        return Outline(problem=self.problem)
 
     def stress(self, at: Located) -> Array:
         """σxx, σyy, σxy (3, k, q) [p]; where an element ends, the mean of both sides; not a number outside."""
@@ -206,7 +210,7 @@ class StressField:
 
     def _beyond_curve(self, points: Array, element: IntArray, xi: Array) -> Array:
         """How far points (k, 2) are beyond the curve [L] near places of it, along its normal; negative inside."""
-        half = half_lengths(self.mesh).sum(axis=1)[element] / 2
+        half = self.mesh.lengths[element] / 2
         for _ in range(ALONG_CURVE):
             away, inward = self._from_curve(points, element, xi)
             xi = np.clip(xi + (away[:, 0] * inward[:, 1] - away[:, 1] * inward[:, 0]) / half, -1, 1)

@@ -6,9 +6,11 @@ import pytest
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.loading import permanent_loading
 from bemcontact.bem.mesh import build
+from bemcontact.bem.outline import Outline
 from bemcontact.bem.rigid_motions import free_rigid_motions
+from bemcontact.bem.solution import solve_system
 from bemcontact.bem.stress_field import StressField, smooth_starts
-from bemcontact.bem.system import System, solve_system
+from bemcontact.bem.system import System
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.problem import Problem
 
@@ -36,7 +38,7 @@ def field_of(body: Problem) -> StressField:
         mesh=mesh, material=body.material, points=ContactPoints.none(mesh), motions=motions, loadings=[loading]
     )
     u, t = system.fields(solve_system(system).combined(np.ones(1)), loading)
-    return StressField.of(body, mesh, u[..., None], t[..., None], [body.loads], np.ones((1, 1)))
+    return StressField.of(Outline(problem=body, mesh=mesh), u[..., None], t[..., None], [body.loads], np.ones((1, 1)))
 
 
 def column() -> dict:
@@ -135,7 +137,7 @@ def test_where_points_are():
     body = problem({"outer": [flat, circle("arc", 1, [0, 180], 6)], "holes": [[hole]]})
     mesh = build(body)
     u, t = np.zeros((len(mesh.nodes), 2, 1)), np.zeros((len(mesh.elements), 3, 2, 1))
-    field = StressField.of(body, mesh, u, t, [], np.zeros((1, 0)))
+    field = StressField.of(Outline(problem=body, mesh=mesh), u, t, [], np.zeros((1, 0)))
     angle = np.linspace(0.05, 3.1, 40)
     rim = np.column_stack([np.cos(angle), np.sin(angle)])
     for on in (rim, [0, 0.5] + 0.2 * rim, np.column_stack([np.linspace(-0.99, 0.99, 17), np.zeros(17)])):
