@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from bemcontact.analysis.body_stress import BodyStress
 from bemcontact.analysis.largest_stress import LargestStresses, largest_stresses
 from bemcontact.analysis.stress import EdgeStress, Stress
+from bemcontact.analysis.triangulated_body import TriangulatedBody, triangulated_body
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy, together
 from bemcontact.assessment.certificate import Certificate
@@ -243,6 +244,17 @@ class Result(Recorded):
         """
         pressure, _ = self.contact_fields()
         return largest_stresses(self._body_stress, pressure[:, 1] > 0)
+
+    @cached_property
+    def triangulated(self) -> TriangulatedBody:
+        """Displacement and stress all over the body, on triangles that fill it.
+
+        Raises
+        ------
+        ProblemError
+            The result is that of a condensed problem, which has no body.
+        """
+        return triangulated_body(self._body_stress)
 
     def contact_fields(self) -> tuple[Array, Array]:
         """Pressure (m, 3) [p] and gap (m, 3) [L] at the nodes of each boundary element, of the zone of its edge.

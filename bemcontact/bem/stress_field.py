@@ -96,9 +96,7 @@ class StressField:
     factors: Array
 
     @classmethod
-    def of(
-        cls, outline: Outline, displacement: Array, traction: Array, loads: Sequence[Loads], factors: Array
-    ) -> Self:
+    def of(cls, outline: Outline, displacement: Array, traction: Array, loads: Sequence[Loads], factors: Array) -> Self:
         """Read the boundary: displacement (N, 2, q) [L], traction (m, 3, 2, q) [p]."""
         problem, mesh, u, t = outline.problem, outline.mesh, displacement, traction
         for item, factor in zip(loads, factors.T, strict=True):

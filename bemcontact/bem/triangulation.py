@@ -11,9 +11,9 @@ from bemcontact.bem.mesh import Mesh
 
 PIECES = 2
 """Pieces into which each element is cut at first."""
-GROWTH = 0.35
+GROWTH = 0.25
 """Growth of the triangles with the distance from the boundary."""
-LARGEST = 1 / 12
+LARGEST = 1 / 20
 """Largest size of a triangle over the diameter of the body."""
 CLEAR = 0.45
 """Least distance of an inner point from the boundary over the size of its cell."""

@@ -4,7 +4,8 @@ Each ``draw_...`` function draws into axes that it is given; each ``figure_of_..
 """
 
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
-from bemcontact.report.figures.contact import close_ups, draw_contact, draw_deformed
+from bemcontact.report.figures.contact import close_ups, draw_contact
+from bemcontact.report.figures.deformed import draw_deformed
 from bemcontact.report.figures.design import draw_relief, draw_relieved_pressure, figure_of_design
 from bemcontact.report.figures.load_cases import draw_case_pressures, figure_of, figure_of_cases, pictures_of
 from bemcontact.report.figures.mesh_study import draw_convergence, draw_history, figures_of
@@ -17,10 +18,12 @@ from bemcontact.report.figures.result import (
     draw_pressure,
     figure_of_result,
 )
+from bemcontact.report.figures.stress import StressMeasure, fill_with_stress
 from bemcontact.report.figures.study import draw_output, figures_of_study
 
 __all__ = [
     "FORMATS",
+    "StressMeasure",
     "close_ups",
     "draw_against",
     "draw_case_pressures",
@@ -50,6 +53,7 @@ __all__ = [
     "figures_of",
     "figures_of_reproduction",
     "figures_of_study",
+    "fill_with_stress",
     "pictures_of",
     "save",
     "vector_graphic",

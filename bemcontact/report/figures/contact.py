@@ -5,15 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from scipy.spatial import KDTree
 
 from bemcontact.analysis.result import Result
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array
 from bemcontact.bem.mesh import BoundaryState, element_curves
-from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.bars import with_bar, without_digits_beyond
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import LEVEL
@@ -28,7 +26,9 @@ from bemcontact.report.figures.page import (
     plain,
     without_glyph_warnings,
 )
-from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports, surface_line
+from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports
+from bemcontact.report.figures.stress import StressMeasure, fill_with_stress
+from bemcontact.report.figures.surfaces import surfaces_of
 from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, place_names
 from bemcontact.report.formatting import with_unit
 
@@ -107,26 +107,36 @@ def close_ups(result: Result, share: float = CLOSE) -> list[str]:
     ]  # fmt: skip
 
 
-def draw_contact(axes: Axes, result: Result, zone: str | None = None, scale: float | None = None) -> None:
+def draw_contact(
+    axes: Axes,
+    result: Result,
+    zone: str | None = None,
+    scale: float | None = None,
+    stress: StressMeasure | None = None,
+) -> None:
     """Draw the deformed body to scale, its supports and loads, the rigid surfaces, and the pressure as a fan.
 
     The fan lies outside the body, along the normals of the rigid surface. The largest pressure of each unbroken piece
     of contact is written beside it; one that is infinite is cut off and written as such. Of a `zone` only its contact
     is drawn, with as much of the body to either side, without supports and loads; if it has several contacts far from
     each other, that with the largest pressure. `scale` is the pressure with the longest fan; it is chosen if absent.
-    `ValueError` for the result of a condensed problem.
+    With a `stress` the body is filled with its contours. `ValueError` for the result of a condensed problem.
     """
-    sketch_contact(axes, result, zone, scale)()
+    sketch_contact(axes, result, zone, scale, stress)()
 
 
 def sketch_contact(
-    axes: Axes, result: Result, zone: str | None = None, scale: float | None = None
+    axes: Axes,
+    result: Result,
+    zone: str | None = None,
+    scale: float | None = None,
+    stress: StressMeasure | None = None,
 ) -> Callable[[], None]:
     """Draw as `draw_contact` does, and return what writes the numbers; call it when the whole page has its contents."""
     state, problem, units = result.boundary, result.problem, units_of(result.contact)
     if state is None or problem is None:
         raise ValueError("the result of a condensed problem has no boundary to draw")
-    loops = _draw_body(axes, state)
+    outline, loops = _draw_body(axes, state)
     fans = [fan for fan in _fans(result, state) if zone in (None, fan.zone)]
     part = zone is not None and bool(fans)
     window = np.concatenate(loops)
@@ -135,7 +145,7 @@ def sketch_contact(
     width, height = np.ptp(window, axis=0)
     size = float(np.hypot(width, height))
     reach = size if part else OVERHANG * size
-    grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in _surfaces(result, problem, reach)]
+    grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in surfaces_of(result, problem, reach)]
     covered = [np.clip(ground, window.min(axis=0) - reach, window.max(axis=0) + reach) for ground in grounds]
     symbols = list[Array]()
     if not part:
@@ -157,6 +167,8 @@ def sketch_contact(
     beyond = [fan.feet + ROOM * (tip - fan.feet) for fan, tip in zip(fans, tips, strict=True)]
     drawn = np.concatenate([window, *beyond, *([] if part else covered), *symbols])
     frame_plan(axes, drawn, units.length)
+    if stress is not None:
+        fill_with_stress(axes, result, stress, outline, window=window if part else None)
 
     def write() -> None:
         with without_glyph_warnings():
@@ -175,8 +187,8 @@ def _inked(fan: Fan, tips: Array) -> Array:
     return (feet + np.linspace(0, 1, 9)[:, None, None] * (ends - feet)).reshape(-1, 2)
 
 
-def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
-    """Draw the deformed body, and its undeformed outline where the two differ visibly; return loops (j, 2)."""
+def _draw_body(axes: Axes, state: BoundaryState) -> tuple[Path, list[Array]]:
+    """Draw the deformed body, and its undeformed outline where the two differ visibly; return outline and loops."""
     samples = 5 if len(state.points) < MANY_ELEMENTS else 3
     before, after = (element_curves(at, samples) for at in (state.points, state.points + state.displacement))
     outline = outline_of(state, after)
@@ -185,7 +197,7 @@ def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
     if float(np.abs(after - before).max()) > VISIBLE * float(np.ptp(after.reshape(-1, 2), axis=0).max()):
         undeformed = outline_of(state, before)
         axes.add_patch(PathPatch(undeformed, facecolor="none", edgecolor=GREY, linewidth=0.9, linestyle="dashed"))
-    return [loop.reshape(-1, 2) for loop in loops_of(state, after)]
+    return outline, [loop.reshape(-1, 2) for loop in loops_of(state, after)]
 
 
 def _draw_fan(axes: Axes, fan: Fan, tips: Array, spacing: float) -> None:
@@ -262,103 +274,11 @@ def _label(fan: Fan, tips: Array, text: str, *, cut: bool) -> Name:
     )
 
 
-def _surfaces(
-    result: Result, problem: Problem, overhang: float, factor: float = 1.0, near: float = np.inf
-) -> Iterator[tuple[Array, Array]]:
-    """Lines (j, 2) of the rigid surfaces and unit normals (j, 2), displaced with their tools.
-
-    Displacements and gaps are magnified by the factor: a surface is moved as a whole, so that it meets the magnified
-    body where it touches or is nearest. That of a zone whose normals turn, such as a pin in a hole, is bent instead,
-    see `ground_of`.
-    """
-    tools = result.contact.tools
-    moves = dict(zip(tools.names, tools.displacement(result.solution.rigid_amplitudes), strict=True))
-    points = dict(zip(tools.names, tools.point, strict=True))
-    for number, (name, zone) in enumerate(problem.contact_zones.items()):
-        nearest = _nearest_points(result, number)
-        if isinstance(zone.surface, DeflectedContour) or (factor > 1 and _turn(result.contact.normals[nearest]) > TURN):
-            yield from ground_of(result, number, near, factor)
-            continue
-        line, normals = surface_line(problem, name, overhang)
-        for tool in (tool for tool, stated in problem.tools.items() if name in stated.zones):
-            x, y, angle = factor * moves[tool]
-            line = line + (x, y) + angle * (line - points[tool])[:, ::-1] * (-1, 1)
-        gaps = result.contact.initial_gap[nearest, None] * result.contact.normals[nearest]
-        yield line - (factor - 1) * gaps.mean(axis=0), normals
-
-
-def _nearest_points(result: Result, zone: int) -> IntArray:
-    """Contact points of a zone that touch, or the one with the smallest gap."""
-    own = np.flatnonzero(result.contact.zone == zone)
-    touching = own[result.touching[own]]
-    gap = result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes)
-    return touching if len(touching) else own[[int(np.argmin(gap[own]))]]
-
-
-def _turn(normals: Array) -> float:
-    """Largest angle [rad] between normals (k, 2) and their mean direction."""
-    mean = normals.mean(axis=0)
-    size = float(np.hypot(*mean))
-    return float(np.arccos(np.clip(normals @ mean / size, -1, 1)).max()) if size else np.pi
-
-
 def _displacement(state: BoundaryState) -> Displacement:
     """Displacement of any point of the boundary: that of the nearest of some on each element."""
     nearest = KDTree(element_curves(state.points, 17).reshape(-1, 2))
     displacement = element_curves(state.displacement, 17).reshape(-1, 2)
     return lambda points: displacement[nearest.query(points)[1]]
-
-
-MAGNIFIED = 0.05
-"""Share of the body's size at which the largest displacement can be seen well; smaller ones are magnified."""
-
-TURN = 0.6
-"""Turn of the normals of a contact, in radians, from which its surface is bent with the gaps, not moved."""
-NEAR = 0.15
-"""Share of the body's size up to which the rigid surface across a gap is shown."""
-DISTORTED = 0.1
-"""Part of that share by which magnified gaps may displace a surface that is shown."""
-
-
-def draw_deformed(axes: Axes, result: Result) -> None:
-    """Draw the boundary before and after deformation; thick lines show contact.
-
-    Displacements and gaps to the rigid surfaces are magnified by a stated factor. `ValueError` for the result of a
-    condensed problem.
-    """
-    state, problem = result.boundary, result.problem
-    if state is None or problem is None:
-        raise ValueError("the result of a condensed problem has no boundary to draw")
-    factor = _magnification(state)
-    before = element_curves(state.points, 9)
-    after = element_curves(state.points + factor * state.displacement, 9)
-    axes.add_collection(LineCollection(list(before), colors=GREY, linewidths=0.9, linestyles="dashed", zorder=2))
-    axes.add_collection(LineCollection(list(after), colors=BLACK, linewidths=1.8, zorder=3))
-    axes.add_patch(PathPatch(outline_of(state, after), facecolor=BODY, edgecolor="none", zorder=0))
-    _draw_touching(axes, result, state, after)
-    covered = [before.reshape(-1, 2), after.reshape(-1, 2)]
-    size = float(np.hypot(*body_extent(state)))
-    surfaces = _surfaces(result, problem, OVERHANG * size, factor, NEAR * size)
-    low, high = (end(np.concatenate(covered), axis=0) for end in (np.min, np.max))
-    grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in surfaces]
-    covered += [np.clip(ground, low - OVERHANG * size, high + OVERHANG * size) for ground in grounds]
-    unit = units_of(result.contact).length
-    frame_plan(axes, np.concatenate(covered), unit)
-    known = (bar.value for bar in result.accuracy.bars if bar.quantity == "displacement")  # as the table has it
-    most = next(known, None) or float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
-    largest = with_unit(f"{most:.3g}", plain(unit))
-    scale = "displacements to scale" if factor == 1 else f"displacements and gaps × {factor:g}"
-    title = f"deformed shape, {scale}\nlargest displacement {largest}; thick: in contact; dashed: undeformed"
-    axes.set_title(title, loc="left", fontsize=10)
-
-
-def _draw_touching(axes: Axes, result: Result, state: BoundaryState, after: Array) -> None:
-    """Draw the half elements with pressure at both nodes, of curves (m, 9, 2), as thick lines with dots."""
-    carrying = {tuple(point) for point in result.contact.points[result.touching].tolist()}
-    touching = np.array([[tuple(node) in carrying for node in element] for element in state.points.tolist()])
-    halves = [*after[touching[:, 0] & touching[:, 1], :5], *after[touching[:, 1] & touching[:, 2], 4:]]
-    axes.add_collection(LineCollection(halves, colors=VERMILION, linewidths=3.5, capstyle="round", zorder=4))
-    axes.scatter(*after[:, ::4][touching].T, s=10, color=VERMILION, zorder=4)
 
 
 def body_extent(state: BoundaryState) -> tuple[float, float]:
@@ -377,32 +297,3 @@ def loops_of(state: BoundaryState, curves: Array) -> list[Array]:
     """Split curves (m, c, 2) where one loop of elements ends and the next begins."""
     breaks = (state.points[1:, 0] != state.points[:-1, 2]).any(axis=1)
     return np.split(curves, np.flatnonzero(breaks) + 1)
-
-
-def ground_of(result: Result, zone: int, near: float, factor: float = 1.0) -> Iterator[tuple[Array, Array]]:
-    """Lines (j, 2) of the rigid surface of a zone, with normals, no farther than `near` from the deformed body.
-
-    Its gaps to the undeformed body are magnified by the factor, as displacements are, so that the two meet in contact.
-    Where that would show it bent or turned, it is left out.
-    """
-    contact = result.contact
-    moved = contact.tools.motions @ (contact.tools.amplitudes @ result.solution.rigid_amplitudes)
-    feet = contact.points - factor * (contact.initial_gap + moved)[:, None] * contact.normals
-    bent = (factor - 1) * abs(contact.initial_gap + moved)
-    gap = result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes)
-    shown = (factor * gap <= near) & (bent <= DISTORTED * near)
-    for piece in pieces_of(contact, result.touching):
-        for stretch in np.split(piece.index, np.flatnonzero(np.diff(shown[piece.index])) + 1):
-            if contact.zone[stretch[0]] == zone and shown[stretch[0]] and len(stretch) > 1:
-                yield feet[stretch], contact.normals[stretch]
-
-
-def _magnification(state: BoundaryState) -> float:
-    """Choose 1, 2 or 5 times a power of ten so that the largest displacement can be seen."""
-    largest = float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
-    size = float(np.hypot(*body_extent(state)))
-    if largest == 0 or largest >= MAGNIFIED * size / 2:
-        return 1.0
-    wanted = MAGNIFIED * size / largest
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(max(step for step in (1, 2, 5) if step * power <= wanted) * power)

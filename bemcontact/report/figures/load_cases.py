@@ -15,9 +15,9 @@ from bemcontact.report.figures.contact import (
     close_ups,
     common_scale,
     draw_contact,
-    draw_deformed,
     sketch_contact,
 )
+from bemcontact.report.figures.deformed import draw_deformed
 from bemcontact.report.figures.mesh_study import plan_of
 from bemcontact.report.figures.page import (
     GREY,
@@ -44,6 +44,7 @@ from bemcontact.report.figures.result import (
     of_zone,
     show_around,
 )
+from bemcontact.report.figures.stress import StressMeasure
 from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import case_verdicts
 
@@ -58,9 +59,9 @@ ENVELOPE = "largest of all"
 """Name of the envelope in legends."""
 
 
-def figure_of(results: Result | CaseResults) -> Figure:
-    """Compose the page of a result, or of the results of all load cases."""
-    return figure_of_result(results) if isinstance(results, Result) else figure_of_cases(results)
+def figure_of(results: Result | CaseResults, stress: StressMeasure = StressMeasure.VON_MISES) -> Figure:
+    """Compose the page of a result, with contours of a stress, or of the results of all load cases."""
+    return figure_of_result(results, stress) if isinstance(results, Result) else figure_of_cases(results)
 
 
 def figure_of_cases(cases: CaseResults) -> Figure:
@@ -187,7 +188,7 @@ WIDTH = 5.4
 """Inches of a picture on a page: its text can be read on a telephone, and two stand side by side."""
 
 
-def pictures_of(results: Result | CaseResults) -> dict[str, Figure]:
+def pictures_of(results: Result | CaseResults, stress: StressMeasure = StressMeasure.VON_MISES) -> dict[str, Figure]:
     """Make the pictures for the page of a result or of all load cases, by name.
 
     Names are "problem" and "contact" or "contacts" (if a body is known), "deformed" of a result, and for each zone
@@ -204,13 +205,13 @@ def pictures_of(results: Result | CaseResults) -> dict[str, Figure]:
         figures["contact"], axes = _page(first)
         draw_contact(axes, first)
         figures["deformed"], axes = _page(first)
-        draw_deformed(axes, first)
+        draw_deformed(axes, first, stress)
     zones = [*first.contact.zone_names]
     for zone in panels_of(first):
         number = f"-{zones.index(zone or zones[0]) + 1}" if zone or len(zones) == 1 else ""
         if (zone or zones[0]) in near and number:
             figures[f"contact{number}"], axes = _page()
-            draw_contact(axes, first, zone or zones[0])
+            draw_contact(axes, first, zone or zones[0], stress=stress)
         figures[f"pressure{number}"], axes = _page(height=3.6)
         if isinstance(results, CaseResults):
             draw_case_pressures(axes, results, zone)

@@ -15,7 +15,7 @@ from bemcontact.contact.solution import Trace
 from bemcontact.options import Weights
 from bemcontact.problem import Problem
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
-from bemcontact.report.figures.contact import draw_deformed
+from bemcontact.report.figures.deformed import draw_deformed
 from bemcontact.report.figures.page import (
     BLACK,
     COLOURS,

@@ -13,7 +13,8 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.report.bars import with_bar
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import LEVEL
-from bemcontact.report.figures.contact import body_extent, close_ups, draw_deformed, sketch_contact
+from bemcontact.report.figures.contact import body_extent, close_ups, sketch_contact
+from bemcontact.report.figures.deformed import draw_deformed
 from bemcontact.report.figures.page import (
     BLACK,
     GREY,
@@ -30,6 +31,7 @@ from bemcontact.report.figures.page import (
     short_label,
     wrapped,
 )
+from bemcontact.report.figures.stress import StressMeasure
 from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import Verdict, in_short, overall, result_verdicts
 
@@ -48,8 +50,8 @@ CLOSED = 1e-9
 """Gap over the displacement scale that is round-off."""
 
 
-def figure_of_result(result: Result) -> Figure:
-    """Compose a page with contact and deformed shape, where the body is known, and pressure and gap.
+def figure_of_result(result: Result, stress: StressMeasure = StressMeasure.VON_MISES) -> Figure:
+    """Compose a page with contact, stress on the deformed shape, where the body is known, and pressure and gap.
 
     Each of a few zones has a row of its own, with a close-up if its contact is small beside the body.
     """
@@ -75,15 +77,16 @@ def figure_of_result(result: Result) -> Figure:
         draw_pressure(pressure, result, zone)
         draw_gap(figure.add_subplot(grid[row, thirds[1]], sharex=pressure), result, zone)
     if plans:
-        draw_deformed(figure.add_subplot(grid[1, :] if plans == 2 else grid[0, 3:]), result)
+        draw_deformed(figure.add_subplot(grid[1, :] if plans == 2 else grid[0, 3:]), result, stress)
     title = f"{wrapped(result.contact.name, 6 * inches)}: {result.solution.formulation}"
     entitle(figure, title, result_verdicts(result), 9 * inches)
     if contact is not None:
         contact.set_title("contact pressure, displacements to scale", loc="left", fontsize=10)
         for name, axes in closer.items():
             axes.set_title(f"{short_label(name, 30)}: close-up", loc="left", fontsize=10)
-        of_contact = [(contact, None), *((axes, name) for name, axes in closer.items())]
-        for write in [sketch_contact(axes, result, name) for axes, name in of_contact]:
+        writers = [sketch_contact(contact, result)]
+        writers += [sketch_contact(axes, result, name, stress=stress) for name, axes in closer.items()]
+        for write in writers:
             write()  # the last ones: labels are placed on the page as it is laid out
     return figure
 

@@ -1,0 +1,89 @@
+"""The deformed shape of a body, magnified so that it is seen, with the rigid surfaces moved along."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.patches import PathPatch
+
+from bemcontact.analysis.result import Result
+from bemcontact.analysis.stress import PointKind
+from bemcontact.arrays import Array
+from bemcontact.bem.mesh import BoundaryState, element_curves
+from bemcontact.report.contact_words import units_of
+from bemcontact.report.figures.contact import OVERHANG, body_extent, outline_of
+from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain
+from bemcontact.report.figures.stress import StressMeasure, fill_with_stress
+from bemcontact.report.figures.surfaces import reach_through, surfaces_of
+from bemcontact.report.figures.symbols import draw_ground
+from bemcontact.report.formatting import with_unit
+
+MAGNIFIED = 0.05
+"""Share of the body's size at which the largest displacement can be seen well; smaller ones are magnified."""
+THROUGH = 0.005
+"""Share of the body's size by which a magnified body may reach through a surface beside the contact."""
+NEAR = 0.15
+"""Share of the body's size up to which the rigid surface across a gap is shown."""
+
+
+def draw_deformed(axes: Axes, result: Result, stress: StressMeasure | None = None) -> None:
+    """Draw the boundary before and after deformation; thick lines show contact.
+
+    Displacements and gaps to the rigid surfaces are magnified by a stated factor. With a `stress` the body is filled
+    with its contours; a ring marks the largest, crosses places where it is infinite. `ValueError` for the result of a
+    condensed problem.
+    """
+    state, problem = result.boundary, result.problem
+    if state is None or problem is None:
+        raise ValueError("the result of a condensed problem has no boundary to draw")
+    factor = _magnification(result, state)
+    before = element_curves(state.points, 9)
+    after = element_curves(state.points + factor * state.displacement, 9)
+    axes.add_collection(LineCollection(list(before), colors=GREY, linewidths=0.9, linestyles="dashed", zorder=2))
+    axes.add_collection(LineCollection(list(after), colors=BLACK, linewidths=1.8, zorder=3))
+    outline = outline_of(state, after)
+    axes.add_patch(PathPatch(outline, facecolor=BODY, edgecolor="none", zorder=0))
+    _draw_touching(axes, result, state, after)
+    covered = [before.reshape(-1, 2), after.reshape(-1, 2)]
+    size = float(np.hypot(*body_extent(state)))
+    surfaces = surfaces_of(result, problem, OVERHANG * size, factor, NEAR * size)
+    low, high = (end(np.concatenate(covered), axis=0) for end in (np.min, np.max))
+    grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in surfaces]
+    covered += [np.clip(ground, low - OVERHANG * size, high + OVERHANG * size) for ground in grounds]
+    unit = units_of(result.contact).length
+    frame_plan(axes, np.concatenate(covered), unit)
+    if stress is not None:
+        fill_with_stress(axes, result, stress, outline, factor)
+    known = (bar.value for bar in result.accuracy.bars if bar.quantity == "displacement")  # as the table has it
+    most = next(known, None) or float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
+    largest = with_unit(f"{most:.3g}", plain(unit))
+    scale = "displacements to scale" if factor == 1 else f"displacements and gaps × {factor:g}"
+    marked = "; thick: in contact; dashed: undeformed"
+    if stress is not None:
+        infinite = (result.triangulated.stress.kind == PointKind.SINGULAR).any()
+        marked = f"; {'crosses: infinite stress' if infinite else 'ring: largest stress'}"
+    title = f"deformed shape, {scale}\nlargest displacement {largest}{marked}"
+    axes.set_title(title, loc="left", fontsize=10)
+
+
+def _draw_touching(axes: Axes, result: Result, state: BoundaryState, after: Array) -> None:
+    """Draw the half elements with pressure at both nodes, of curves (m, 9, 2), as thick lines with dots."""
+    carrying = {tuple(point) for point in result.contact.points[result.touching].tolist()}
+    touching = np.array([[tuple(node) in carrying for node in element] for element in state.points.tolist()])
+    halves = [*after[touching[:, 0] & touching[:, 1], :5], *after[touching[:, 1] & touching[:, 2], 4:]]
+    axes.add_collection(LineCollection(halves, colors=VERMILION, linewidths=3.5, capstyle="round", zorder=4))
+    axes.scatter(*after[:, ::4][touching].T, s=10, color=VERMILION, zorder=4)
+
+
+def _magnification(result: Result, state: BoundaryState) -> float:
+    """Choose 1, 2 or 5 times a power of ten so that the largest displacement can be seen.
+
+    It is smaller where the magnified body would visibly reach through a surface beside the contact.
+    """
+    largest = float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
+    size = float(np.hypot(*body_extent(state)))
+    if largest == 0 or largest >= MAGNIFIED * size / 2:
+        return 1.0
+    wanted = MAGNIFIED * size / largest
+    power = 10.0 ** np.floor(np.log10(wanted))
+    factors = [step * power / down for down in (1, 10, 100) for step in (5, 2, 1) if step * power / down <= wanted]
+    return float(next((f for f in factors if f > 1 and reach_through(result, f) <= THROUGH * size), 1.0))

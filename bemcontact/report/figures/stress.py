@@ -1,0 +1,135 @@
+"""Stress all over the body, as filled contours in the pictures of it."""
+
+from enum import StrEnum
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+from matplotlib.ticker import MaxNLocator
+from matplotlib.tri import Triangulation, TriContourSet
+
+from bemcontact.analysis.result import Result
+from bemcontact.analysis.stress import PointKind, Stress
+from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.report.contact_words import units_of
+from bemcontact.report.figures.page import BLACK, labeled
+
+BESIDE = 0.1
+"""Distance from an infinite stress over the size of what is shown within which no value sets the scale."""
+UNSEEN = 0.003
+"""Share of the area that is shown on which stress may be beyond the scale."""
+LEVELS = 10
+"""About as many levels of color."""
+COLOURS, BOTH_SIGNS = "viridis", "RdBu_r"
+"""Color maps of equivalent stresses, and of components, whose zero is white."""
+
+
+class StressMeasure(StrEnum):
+    """A stress that can be drawn."""
+
+    VON_MISES = "von_mises"
+    MAX_SHEAR = "max_shear"
+    XX = "xx"
+    YY = "yy"
+    XY = "xy"
+    ZZ = "zz"
+
+    @property
+    def words(self) -> str:
+        """Its name in words."""
+        names = {"von_mises": "von Mises stress", "max_shear": "largest shear stress"}
+        return names.get(self.value, f"stress σ{self.value}")
+
+    @property
+    def signed(self) -> bool:
+        """Whether it may be negative."""
+        return self not in (StressMeasure.VON_MISES, StressMeasure.MAX_SHEAR)
+
+    def of(self, stress: Stress) -> Array:
+        """Its values (k,) [p]."""
+        match self:
+            case StressMeasure.VON_MISES:
+                return stress.von_mises
+            case StressMeasure.MAX_SHEAR:
+                return stress.max_shear
+            case StressMeasure.ZZ:
+                return stress.zz
+        return stress.components[:, ("xx", "yy", "xy").index(self.value)]
+
+
+def fill_with_stress(
+    axes: Axes,
+    result: Result,
+    measure: StressMeasure,
+    outline: Path,
+    factor: float = 1.0,
+    window: Array | None = None,
+) -> None:
+    """Fill the deformed body, cut along its outline, with contours of a stress; mark the largest and infinite ones.
+
+    Displacements are magnified by the factor. The colors are for what is inside the `window`, two corners (2, 2).
+    Their scale is for all values but those on a small part of the area, and beside places where stress is infinite.
+    """
+    body = result.triangulated
+    points = body.points + factor * body.displacement
+    values = measure.of(body.stress)
+    shown = np.ones(len(points), bool)
+    if window is not None:
+        shown = np.all((points >= window[0]) & (points <= window[1]), axis=1)
+    infinite = body.stress.kind == PointKind.SINGULAR
+    extent = float(np.hypot(*np.ptp(points if window is None else window, axis=0)))
+    counts = shown & ~infinite & ~_beside(points, points[infinite], BESIDE * extent)
+    counts = counts if counts.any() else shown & ~infinite
+    size = _seen(points, body.triangles, np.where(counts, np.abs(values), 0.0)) or 1.0
+    low = -size if measure.signed else 0.0
+    levels = MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, size)
+    beyond = np.where(infinite, 2.0 * levels[-1], values)
+    triangles = Triangulation(*points.T, body.triangles)
+    drawn = axes.tricontourf(
+        triangles, beyond, levels=levels, cmap=BOTH_SIGNS if measure.signed else COLOURS, zorder=0,
+        extend="both" if measure.signed else "max" if beyond.max() > levels[-1] else "neither",
+    )  # fmt: skip
+    drawn.set_clip_path(PathPatch(outline, transform=axes.transData))
+    _mark(axes, points, np.where(shown & ~infinite, np.abs(values), -np.inf), points[infinite & shown])
+    _add_bar(axes, drawn, result, measure)
+
+
+def _seen(points: Array, triangles: IntArray, sizes: Array) -> float:
+    """The size of a stress that is exceeded on a part of the area too small to be seen."""
+    (ax, ay), (bx, by), (cx, cy) = points[triangles].transpose(1, 2, 0)
+    area = np.abs((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
+    mean = sizes[triangles].mean(axis=1)
+    order = np.argsort(mean)
+    within = area[order] * (mean[order] > 0)
+    beyond = np.searchsorted(np.cumsum(within), (1 - UNSEEN) * within.sum())
+    return float(sizes[triangles[order[: beyond + 1]]].max(initial=0.0))
+
+
+def _beside(points: Array, places: Array, distance: float) -> BoolArray:
+    """Which points (k, 2) are nearer to one of the places (s, 2)."""
+    if not len(places):
+        return np.zeros(len(points), bool)
+    return np.hypot(*(points[:, None] - places).transpose(2, 0, 1)).min(axis=1) < distance
+
+
+def _mark(axes: Axes, points: Array, sizes: Array, infinite: Array) -> None:
+    """Mark infinite stress by crosses; if there is none, the point with the largest stress by a ring."""
+    if not len(infinite):
+        at = int(np.argmax(sizes))
+        for color, width, order in (("white", 2.6, 5), (BLACK, 1.2, 6)):
+            axes.plot(
+                *points[at], marker="o", markersize=8, markerfacecolor="none", markeredgecolor=color,
+                markeredgewidth=width, zorder=order,
+            )  # fmt: skip
+    axes.plot(*infinite.T, linestyle="none", marker="x", markersize=7, markeredgewidth=1.8, color=BLACK, zorder=6)
+
+
+def _add_bar(axes: Axes, drawn: TriContourSet, result: Result, measure: StressMeasure) -> None:
+    """Add the scale of colors."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    bar = figure.colorbar(drawn, ax=axes, fraction=0.045, pad=0.02, shrink=0.9)
+    bar.set_label(labeled(measure.words, units_of(result.contact).stress), fontsize=9)
+    bar.ax.tick_params(labelsize=8.5)
+    bar.outline.set_visible(False)  # pyright: ignore[reportCallIssue]
