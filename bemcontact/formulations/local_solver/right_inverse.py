@@ -12,7 +12,7 @@ from bemcontact.formulations.local_solver.statement import INFINITY, largest
 
 SMALL = 30
 """Number of variables up to which the largest entry is looked for at once."""
-LARGE = 100
+LARGE = 250
 """Number of variables from which rows of fixed variables are not stored."""
 ROOM = 32
 """Rows by which the storage grows."""

@@ -40,7 +40,7 @@ ALIKE = 1e-12
 FEW_DIGITS = 1e-12
 """Relative rounding of a component of a point on rows beyond which remainders are computed with twice the digits."""
 
-FEW = 100
+FEW = 400
 """Number of constraints up to which products with all rows are as fast as with some."""
 
 EXACT, BLUNT = 1e-15, 1e-10
