@@ -12,15 +12,14 @@ Cell = float | int | str | None
 HEAD = """\
 # Speed
 
-All tables of this page are the output of one run of this command:
+This command writes this page, and its numbers as JSON:
 
 ```sh
 python tests/benchmarks/run.py
 ```
 
-It writes this page and the numbers as JSON. Times are CPU seconds of one thread, unless a table says *wall*: other
-work on the machine changes CPU times little. What is compared runs in turns, and each time is the least of several.
-Each ratio is from one run.
+Times are CPU seconds of one thread, unless a table says *wall*: other work on the machine changes CPU times little.
+What is compared runs in turns, and each time is the least of several. Both times of a ratio are from one run.
 """
 
 

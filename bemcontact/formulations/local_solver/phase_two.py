@@ -174,14 +174,17 @@ class Descent:
         self.changed = self.broken = False
         self.whole = self.idle = 0
         self._moved = 0.0
+        self._known: tuple[Array, Array, Array, Array] | None = None
         self._refused: set[int] = set()
         self.multipliers = self.zeros = self._refinement = progress.x[:0]
         self.working = working
         self.hessian = ReducedHessian(progress.statement, working.null_space)
         for direction in self.hessian.left_over.T:
             working.fix(direction, TEMPORARY)
-        progress.place(working.onto(progress.x))
-        progress.forget()
+        near = working.onto(progress.x)
+        if progress.lines or np.count_nonzero(near != progress.x):  # else it is the start, which has been placed
+            progress.place(near)
+            progress.forget()
         self.value = progress.objective
 
     def run(self) -> PhaseTwoEnd:
@@ -248,7 +251,7 @@ class Descent:
         n = working.free.size
         if place is None or not working.size or (place >= n and working.ids[place - n] == TEMPORARY):
             return place
-        return place if working.is_below(abs(multipliers.item(place)) / zero) else None
+        return place if working.inverse.is_below(abs(multipliers.item(place)) / zero) else None
 
     def _rests(self, step: Array) -> bool:
         """Whether a step from the start is no more than rounding, since the start is an answer of this solver."""
@@ -274,7 +277,7 @@ class Descent:
         once = working.multipliers(progress.gradient, refined=True)
         self.multipliers = working.refined(once)
         self._refinement = np.abs(self.multipliers - once)
-        self.zeros = self._fine_zero(self.multipliers) + self._refinement
+        self.zeros = self._fine_zero() + self._refinement
 
     def _sharpened(self) -> bool:
         """Compute `zeros` of fixed variables with wrong signs from the directions that release them.
@@ -368,16 +371,23 @@ class Descent:
         A component that is zero in truth is what rounding leaves of multipliers and of the point.
         """
         progress, working = self.progress, self.working
-        terms = progress.terms(self.multipliers[progress.x.size :], working.W)
+        terms, reach = self._terms_and_reach()
         of_rows = terms.dot(np.abs(working.N))
-        rounded = of_rows.dot(np.abs(working.W)) + progress.statement.curved(self._reach(terms))
+        rounded = of_rows.dot(np.abs(working.W)) + progress.statement.curved(reach)
         return np.concatenate([np.maximum(terms, ROUNDED * rounded), of_rows])
 
-    def _fine_zero(self, multipliers: Array) -> Array:
+    def _fine_zero(self) -> Array:
         """Size of each component of the gradient and of each multiplier of rows that counts as zero (n + r,)."""
-        working, of_rows = self.working, multipliers[self.progress.x.size :]
-        terms = self.progress.terms(of_rows, working.W)
-        return self.progress.fine_zero(terms, working.W, working.N, self._reach(terms))
+        terms, reach = self._terms_and_reach()
+        return self.progress.fine_zero(terms, self.working.W, self.working.N, reach)
+
+    def _terms_and_reach(self) -> tuple[Array, Array]:
+        """Sizes of the terms of the gradient with the multipliers (n,), and `_reach`; once for a point."""
+        progress = self.progress
+        if self._known is None or self._known[0] is not progress.x or self._known[1] is not self.multipliers:
+            terms = progress.terms(self.multipliers[progress.x.size :], self.working.W)
+            self._known = progress.x, self.multipliers, terms, self._reach(terms)
+        return self._known[2:]
 
     def _reach(self, terms: Array) -> Array:
         """Size of the numbers whose rounding each component of the point has (n,), estimated by a sample.

@@ -18,14 +18,14 @@ from numpy.typing import NDArray
 
 from bemcontact.arrays import Array, BoolArray, fine_remainders
 from bemcontact.formulations.local_solver.factorizations import (
-    add_rank_one,
     independent_rows,
     inverse_triangle,
     orthogonal,
     unit_rows,
 )
 from bemcontact.formulations.local_solver.progress import FINE, SearchState
-from bemcontact.formulations.local_solver.statement import EPS, INFINITY, Sides, Statement, largest
+from bemcontact.formulations.local_solver.right_inverse import RightInverse
+from bemcontact.formulations.local_solver.statement import EPS, Sides, Statement
 
 EQUALITY = 2
 TEMPORARY, FLAT = -1, -2
@@ -40,16 +40,15 @@ ALIKE = 1e-12
 FEW_DIGITS = 1e-12
 """Relative rounding of a component of a point on rows beyond which remainders are computed with twice the digits."""
 
-FEW = 100
+FEW = 400
 """Number of constraints up to which products with all rows are as fast as with some."""
 
-EXACT = 1e-15
-"""Product of a unit direction with the rows that it does not change, up to which it needs no correction."""
+EXACT, BLUNT = 1e-15, 1e-10
+"""Product of a unit direction with the rows that it does not change: up to the first it needs no correction, and from
+the second N has lost digits."""
 
 SHARP, WEAR = 1e-12, 1e-8
 """Relative size of a refinement above which refinements are needed, and above which N is computed again."""
-SMALL = 10_000
-"""Number of entries up to which the largest one of N is looked for."""
 
 
 class WorkingSet:
@@ -63,7 +62,7 @@ class WorkingSet:
     sides, held : (n + m,) sides that are held, and whether each is
     free : (n,) 1 for a variable that is not fixed by a bound, else 0
     number : how many constraints are held, temporary ones included
-    W : (r, n) normals of the rows held, on all variables
+    W, inverse : (r, n) normals of the rows held, on all variables, and their right inverse N
     null_space : (n, k) orthonormal directions that change nothing held at the start; later changes leave them alone
     ids : (r,) constraint of each row of W; `TEMPORARY` or `FLAT` for one that is none
     signs : (n + r,) -1 for a variable or row at its lower bound, +1 at its upper, 0 for any other
@@ -77,10 +76,10 @@ class WorkingSet:
         self.sides = sides.copy()
         self.held = sides != 0
         self.free = (~self.held[:n]).astype(float)
-        self._N, self._W = np.zeros((n, n), order="F"), np.zeros((n, n))
+        self._W = np.zeros((n, n))
         self._ids, self._signs = np.zeros(n, dtype=np.intp), np.zeros(2 * n)
         free, rows = self.free.nonzero()[0], sides[n:].nonzero()[0]
-        kept, self.null_space = rows[:0], np.zeros((n, free.size))
+        kept, columns, self.null_space = rows[:0], np.zeros((free.size, 0)), np.zeros((n, free.size))
         self.null_space[free, np.arange(free.size)] = 1.0
         if rows.size and free.size:
             normals, length = unit_rows(A[rows][:, free])
@@ -91,15 +90,14 @@ class WorkingSet:
                 independent = chosen[independent]
             kept, self.null_space = rows[independent], np.zeros((n, null_space.shape[1]))
             self.null_space[free] = null_space
-            self._N[free, : kept.size] = Y @ inverse_triangle(T).T / length[independent]
+            columns = Y @ inverse_triangle(T).T / length[independent]
         if kept.size < rows.size:
             self.sides[n + rows], self.held[n + rows] = 0, False
             self.sides[n + kept], self.held[n + kept] = sides[n + kept], True
         r = kept.size
         self.number = n - free.size + r
         self.temporary, self.sharp = 0, True
-        self._released: Array | None = None
-        self._bound = INFINITY
+        self.inverse = RightInverse(n, free, columns)
         signs = self.sides * (self.sides != EQUALITY)
         self._signs[:n] = signs[:n]
         if r:
@@ -107,30 +105,14 @@ class WorkingSet:
         self._resize(r)
 
     def _resize(self, rows: int) -> None:
-        """Set the views on the leading columns of N and rows of W."""
-        self.size = rows
-        self._inverse, self.W, self.ids = self._N[:, :rows], self._W[:rows], self._ids[:rows]
+        """Set the views on the leading rows of W."""
+        self.size, self.W, self.ids = rows, self._W[:rows], self._ids[:rows]
         self.signs = self._signs[: self.free.size + rows]
 
     @property
     def N(self) -> Array:
         """Right inverse of W (n, r), zero in the rows of fixed variables."""
-        if self._released is not None:
-            direction, self._released = self._released, None
-            self._subtract(direction, direction.dot(self._inverse))
-        return self._inverse
-
-    def _subtract(self, column: Array, row: Array) -> None:
-        """Subtract column rowᵀ from N."""
-        add_rank_one(self._inverse, -1.0, column, row)
-        if self._N.size > SMALL:
-            self._bound += largest(column) * largest(row)
-
-    def is_below(self, limit: float) -> bool:
-        """Whether all entries of N are smaller than a limit."""
-        if self._N.size <= SMALL or self._bound >= limit:
-            self._bound = largest(self.N)
-        return self._bound < limit
+        return self.inverse.whole
 
     def values(self, direction: Array) -> Array:
         """[d; A d] of a direction that changes nothing held."""
@@ -149,13 +131,6 @@ class WorkingSet:
         """The constraint of each place (n + r,): the variables, then `ids`."""
         return np.concatenate([np.arange(self.free.size), self.ids])
 
-    def constraints(self) -> tuple[NDArray[np.intp], Array, Array]:
-        """The rows that are constraints: `ids`, W and N without those that are temporary."""
-        if not self.temporary:
-            return self.ids, self.W, self.N
-        real = self.ids >= 0
-        return self.ids[real], self.W[real], self.N[:, real]
-
     def multipliers(self, gradient: Array, *, refined: bool = False) -> Array:
         """Multipliers (n + r,) of the fixed variables, with the reduced gradient of the free ones, then of the rows.
 
@@ -163,7 +138,7 @@ class WorkingSet:
         """
         if self.size == 0:
             return gradient
-        n, of_rows = gradient.size, gradient.dot(self.N)
+        n, of_rows = gradient.size, self.inverse.against(gradient)
         multipliers = np.empty(n + self.size)
         rest = multipliers[:n]
         np.subtract(gradient, of_rows.dot(self.W), rest)
@@ -175,7 +150,7 @@ class WorkingSet:
     def refined(self, multipliers: Array) -> Array:
         """Multipliers (n + r,) after one more refinement; the change shows the rounding that they had."""
         n = self.free.size
-        correction = multipliers[:n].dot(self.N)
+        correction = self.inverse.against(multipliers[:n])
         return multipliers + np.concatenate([-correction.dot(self.W), correction])
 
     def reduced(self, gradient: Array) -> Array:
@@ -195,12 +170,12 @@ class WorkingSet:
 
         The `rest` of the gradient without its part along the rows is changed too.
         """
-        correction = rest.dot(self.N)
+        correction = self.inverse.against(rest)
         if correction.dot(correction) > WEAR**2 * of_rows.dot(of_rows):
             self._renew()
-            of_rows = gradient.dot(self.N)
+            of_rows = self.inverse.against(gradient)
             np.subtract(gradient, of_rows.dot(self.W), rest)
-            correction = rest.dot(self.N)
+            correction = self.inverse.against(rest)
         rest -= correction.dot(self.W)
         return of_rows + correction
 
@@ -209,8 +184,8 @@ class WorkingSet:
         free = np.flatnonzero(self.free)
         Y, _, T, order = orthogonal(self.W[:, free], 0.0)
         if order.size == self.size:
-            self.N[np.ix_(free, order)] = Y @ inverse_triangle(T).T
-            self.sharp, self._bound = True, INFINITY
+            self.inverse.renew(free, order, Y @ inverse_triangle(T).T)
+            self.sharp = True
 
     def add(self, constraint: int, side: int) -> Array | None:
         """Add a constraint; return its normal, or None if that is in the span of the others: O(n²)."""
@@ -222,10 +197,9 @@ class WorkingSet:
                 return None
             self._append(normal, constraint, sign, inverse)
         else:
-            if self.size:
-                if self._hold(normal, constraint) is None:
-                    return None
-                self._inverse[constraint] = 0.0
+            if self.size and self._hold(normal, constraint) is None:
+                return None
+            self.inverse.fix(constraint)
             self._signs[constraint], self.free[constraint] = sign, 0.0
         self.sides[constraint], self.held[constraint] = side, True
         self.number += 1
@@ -236,14 +210,14 @@ class WorkingSet:
         normal = self.statement.normal(constraint) * self.free
         outside = normal
         for _ in range(2):
-            outside = (outside - outside.dot(self.N).dot(self.W)) * self.free
+            outside = (outside - self.inverse.against(outside).dot(self.W)) * self.free
         return self._is_rounding(float(outside.dot(outside)))
 
     def _is_rounding(self, outside: float) -> bool:
         """Whether the squared length of a normal outside the span is none."""
         if outside > DEPENDENT**2:
             return False
-        return outside <= max(ALIKE, 10.0 * EPS * largest(self.N)) ** 2
+        return outside <= max(ALIKE, 10.0 * EPS * self.inverse.largest) ** 2
 
     def fix(self, direction: Array, kind: int) -> None:
         """Add a temporary row, with a direction of the null space as its normal."""
@@ -258,11 +232,16 @@ class WorkingSet:
 
         The normal may be that of a variable.
         """
-        if self._released is not None and self.number == normal.size - 1:
-            return self._exchange(normal, variable)
-        along = normal.dot(self.N) if variable is None else self.N[variable].copy()
+        if self.number == normal.size - 1 and (only := self.inverse.exchanged(normal, variable)) is not None:
+            component, direction = only
+            if self._is_rounding(component * component):
+                return None
+            inverse = direction / component
+            self.inverse.exchange(normal, variable, inverse)
+            return inverse
+        along = self.inverse.against(normal) if variable is None else self.inverse.row(variable)
         outside = (normal - along.dot(self.W)) * self.free
-        again, size = outside.dot(self.N), float(outside.dot(normal))
+        again, size = self.inverse.against(outside), float(outside.dot(normal))
         if again.dot(again) > SHARP**2 * size:
             self.sharp = False
             outside -= again.dot(self.W) * self.free
@@ -270,25 +249,14 @@ class WorkingSet:
         if self._is_rounding(size):
             return None
         inverse = outside / size
-        self._subtract(inverse, along)
-        return inverse
-
-    def _exchange(self, normal: Array, variable: int | None) -> Array | None:
-        """As `_hold` where only the direction released last is free: one change of N instead of two."""
-        direction = self._released
-        assert direction is not None
-        along = normal.dot(self._inverse) if variable is None else self._inverse[variable].copy()
-        component = float(direction.dot(normal)) if variable is None else direction.item(variable)
-        if self._is_rounding(component * component):
-            return None
-        self._released, inverse = None, direction / component
-        self._subtract(inverse, along)
+        self.inverse.subtract(inverse, along)
         return inverse
 
     def _append(self, normal: Array, constraint: int, sign: int, inverse: Array) -> None:
         """Append a row of W and a column of N."""
         r, n = self.size, self.free.size
-        self._N[:, r], self._W[r], self._ids[r], self._signs[n + r] = inverse, normal, constraint, sign
+        self.inverse.append(inverse)
+        self._W[r], self._ids[r], self._signs[n + r] = normal, constraint, sign
         self._resize(r + 1)
 
     def drop(self, place: int) -> tuple[int, Array]:
@@ -300,8 +268,9 @@ class WorkingSet:
         if place < n:
             direction, constraint = self._along_variable(place), place
             self._signs[place], self.free[place] = 0.0, 1.0
+            self.inverse.free(place)
         else:
-            direction, constraint = self.N[:, place - n].copy(), self._forget(place - n)
+            direction, constraint = self.inverse.column(place - n), self._forget(place - n)
         direction = self.within(direction)
         if constraint >= 0:
             self.sides[constraint], self.held[constraint] = 0, False
@@ -309,7 +278,7 @@ class WorkingSet:
         if self.size or place >= n:
             direction /= sqrt(direction.dot(direction))
         if self.size:
-            self._released = direction
+            self.inverse.released(direction)
         return constraint, direction
 
     def within(self, direction: Array) -> Array:
@@ -317,20 +286,23 @@ class WorkingSet:
         if self.size == 0:
             return direction
         rest = self.W.dot(direction)
-        if rest.dot(rest) <= EXACT**2 * direction.dot(direction):
+        lost, length = float(rest.dot(rest)), float(direction.dot(direction))
+        if lost <= EXACT**2 * length:
             return direction
-        return direction - self.N.dot(rest)
+        self.sharp = self.sharp and lost <= BLUNT**2 * length
+        return direction - self.inverse.times(rest)
 
     def _along_variable(self, variable: int) -> Array:
         """The direction that changes a fixed variable and no row."""
-        direction = -self.N.dot(self.W[:, variable]) if self.size else np.zeros(self.free.size)
+        direction = -self.inverse.times(self.W[:, variable]) if self.size else np.zeros(self.free.size)
         direction[variable] = 1.0
         return direction
 
     def _forget(self, row: int) -> int:
         """Replace a row by the last one, and return its constraint."""
         constraint, n, last = int(self._ids[row]), self.free.size, self.size - 1
-        self._N[:, row], self._W[row], self._ids[row] = self._N[:, last], self._W[last], self._ids[last]
+        self.inverse.forget(row)
+        self._W[row], self._ids[row] = self._W[last], self._ids[last]
         self._signs[n + row] = self._signs[n + last]
         self.temporary -= constraint < 0
         self._resize(last)
@@ -343,12 +315,15 @@ class WorkingSet:
         x = np.where(self.held[:n], targets[:n], x)
         if self.size == 0:
             return x
-        ids, W, N = self.constraints()
-        near = x + N.dot(targets[ids] - W.dot(x))
-        lost = EPS * np.abs(N).dot(np.abs(W).dot(np.abs(near)))
+        right = targets[self.ids] if not self.temporary else self.W.dot(x)
+        if self.temporary:
+            real = self.ids >= 0
+            right[real] = targets[self.ids[real]]
+        near = x + self.inverse.times(right - self.W.dot(x))
+        lost = EPS * self.inverse.sizes_times(np.abs(self.W).dot(np.abs(near)))
         if not np.count_nonzero(lost > FEW_DIGITS * np.abs(near)):
             return near
-        return near + N.dot(fine_remainders(targets[ids], W, near))
+        return near + self.inverse.times(fine_remainders(right, self.W, near))
 
 
 def supporting(progress: SearchState, sides: Sides) -> Sides:

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from bemcontact.arrays import exact_remainders, fine_remainders
 from bemcontact.formulations.local_solver.factorizations import orthogonal
 from bemcontact.formulations.local_solver.phase_two import ReducedHessian
+from bemcontact.formulations.local_solver.right_inverse import LARGE, ROOM
 from bemcontact.formulations.local_solver.statement import EPS, Statement
 from bemcontact.formulations.local_solver.working_set import TEMPORARY, WorkingSet
 
@@ -85,6 +86,45 @@ def test_two_hundred_updates_keep_what_defines_the_factors(seed, definite):
     for _ in range(200):
         change_at_random(data, working, hessian, rng)
         assert_defined(data, working, hessian)
+
+
+def test_rows_of_fixed_variables_need_not_be_stored():
+    """More variables than `LARGE`, few of them free at the start: the storage grows, and rows change their places."""
+    data, rng = statement(0, LARGE + 20, 30, definite=True), np.random.default_rng(0)
+    sides = np.zeros(LARGE + 50)
+    sides[: LARGE + 10], sides[-5:] = -1, 1
+    working, hessian = start(data, sides)
+    for variable in range(2 * ROOM):
+        hessian.enter(working.drop(variable)[1])
+    assert_defined(data, working, hessian)
+    for step in range(300):
+        change_at_random(data, working, hessian, rng)
+        if step % 20 == 0:
+            assert_defined(data, working, hessian)
+
+
+@pytest.mark.parametrize(("n", "m"), [(12, 10), (LARGE + 20, 90)])
+def test_exchanges_at_a_vertex_keep_the_inverse(n, m):
+    """One change of N for both the constraint that leaves and the one that enters; N is asked for now and then."""
+    data, rng = statement(1, n, m, definite=True), np.random.default_rng(1)
+    sides = np.zeros(n + m)
+    sides[:n] = -1
+    working = WorkingSet(data, sides.astype(np.int8))
+    for step in range(300):
+        places = np.concatenate([np.flatnonzero(working.held[:n]), n + np.arange(working.size)])
+        direction = working.drop(int(rng.choice(places)))[1]
+        slopes = np.abs(np.concatenate([direction, data.A @ direction])) * ~working.held
+        assert working.add(int(rng.choice(np.flatnonzero(slopes > 0.2 * slopes.max()))), 1) is not None
+        if step % 7 == 0:
+            free = working.free > 0
+            assert_allclose(working.W @ working.N, np.eye(working.size), atol=1e-9)
+            assert_allclose(
+                working.N[free],
+                np.linalg.inv(working.W[:, free]),
+                atol=1e-8 * max(1.0, np.abs(working.N).max(initial=0.0)),
+            )
+            assert not working.N[~free].any()
+    assert working.size > 0
 
 
 @pytest.mark.parametrize("seed", range(5))
