@@ -17,6 +17,7 @@ from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprin
 from bemcontact.assessment.penetration import Penetration
 from bemcontact.assessment.residual import Residuals
 from bemcontact.bem.mesh import BoundaryState
+from bemcontact.blas_threads import one_thread
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.record import (
@@ -190,6 +191,7 @@ class Result(Recorded):
         infinite = [item.at for item in (*self.accuracy.infinite_peaks, *known) if item.at is not None]
         return BodyStress.of(self.problem, self.boundary, pressure[:, 1] > 0, infinite)
 
+    @one_thread
     def stress(self, points: ArrayLike) -> Stress:
         """Stress at points inside the body and on its boundary.
 
@@ -210,6 +212,7 @@ class Result(Recorded):
         """
         return self._body_stress.stress(points)
 
+    @one_thread
     def displacement(self, points: ArrayLike) -> Array:
         """Displacement (k, 2) [L] at points inside the body and on its boundary.
 
@@ -224,6 +227,7 @@ class Result(Recorded):
         """
         return self._body_stress.displacement(points)
 
+    @one_thread
     def boundary_stress(self) -> dict[str, EdgeStress]:
         """Stress along each edge by its name: hoop stress with its peak, pressure, shear.
 
@@ -234,6 +238,7 @@ class Result(Recorded):
         """
         return {edge: self._body_stress.along(edge) for edge in self._body_stress.field.mesh.edge_names}
 
+    @one_thread
     def largest_stresses(self) -> LargestStresses:
         """Look for the largest stresses: below each contact, inside the body and along its edges.
 

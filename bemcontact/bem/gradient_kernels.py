@@ -2,7 +2,7 @@
 
 With τ = ζ - z, ζ on the element and z the point inside, in complex notation u + iv for displacement:
 
-    ∂u/∂z  = c (κ S - conj S)                                         S = Σ_k J_k W_k
+    ∂u/∂z  = c ((κ-1) Re S + i (κ+1) Im S)                            S = Σ_k J_k W_k
     ∂u/∂z̄ = c Σ_k [conj(J_k) (κ P_k + i D_k) + K_k conj(W_k)]         W_k = P_k - i D_k
 
     J_k = ∫ N_k dξ / τ        K_k = ∫ N_k (τ / conj τ²) dξ        c = 1/(8π(1-ν)), κ = 3 - 4ν

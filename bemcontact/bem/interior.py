@@ -124,7 +124,7 @@ class Interior:
         for block in self._blocks(len(z)):
             J, K = (part.reshape(len(part), -1) for part in self.integrals(z[block]))
             S = J @ W
-            a[block] = c * (fields.kappa * S - S.conj())
+            a[block] = c * ((fields.kappa - 1) * S.real + 1j * (fields.kappa + 1) * S.imag)
             b[block] = c * (J.conj() @ X + K @ conjugate)
         return Gradient(a, b)
 

@@ -53,6 +53,15 @@ def test_constant_stress_in_corners(depth: float):
     assert abs(error).max() < 1e-10
 
 
+def test_constant_stress_of_a_nearly_incompressible_body():
+    """No digits are lost to the bulk modulus, a million times the shear modulus."""
+    material = Material(young_modulus=3.0, poisson_ratio=0.4999995)
+    mesh = mesh_of(*MESHES["plate with a hole"])
+    points = off_boundary(np.vstack([below(mesh, local, d) for local in (-1, 0.3) for d in DEPTHS]), mesh)
+    error = stress_at(points, mesh, material, exact_fields(mesh, material, CONSTANT)) - CONSTANT.stress(points)
+    assert abs(error).max() < 1e-10
+
+
 def test_constant_stress_of_a_solution():
     """What the system solves for on a plate with a hole, not what is prescribed, is exact inside too."""
     mesh = mesh_of(rectangle(2, 1, even(6), even(4)), [("hole", arc((1, 0.5), 0.3, 360, 0), even(8))])
