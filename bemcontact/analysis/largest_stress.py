@@ -1,8 +1,8 @@
 """The largest stresses of a body, looked for and not sampled: below each contact, inside, and along its edges.
 
-Starts are points below the boundary, at depths that grow from a part of the element there to the size of the body. From
-those that are larger than their neighbors, a search with smaller and smaller steps goes up to a maximum. A maximum
-inside has lower stress all around. On lines of symmetry the body goes on in its mirror image.
+Starts are points that fill the body, and lie as close as the boundary elements there. From those that are larger than
+their neighbors, a search with smaller and smaller steps goes up to a maximum. A maximum inside has lower stress all
+around. On lines of symmetry the body goes on in its mirror image.
 """
 
 from collections.abc import Callable
@@ -10,21 +10,23 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from bemcontact.analysis.body_stress import BodyStress
 from bemcontact.analysis.stress import Stress
+from bemcontact.analysis.triangulated_body import TriangulatedBody
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.checks.attributes import PLACE, WithHints, Words
 
-FIRST, GROWTH = 0.3, 1.35
-"""Least depth of a start over the length of the element, and the ratio of two depths."""
-SEARCHES = 24
-"""Number of starts, those with the largest stress first."""
-STEP, SETTLED, MOST_STEPS = 0.2, 1e-4, 60
-"""First step over the depth of the start, the last one over the first, and the most steps."""
+RISE, SEARCHES = 0.3, 24
+"""Part of the largest stress at a point from which on a search begins at others, and the most searches."""
+STEP, SETTLED, SHORTER, MOST_STEPS = 0.2, 1e-2, 0.3, 30
+"""First step over the depth of the start, the last one over the first, their ratio, and the most steps."""
 SAMPLES = 65
 """Places on an element from which the depth of a point is measured first."""
+BESIDE_LINE = 1e-7
+"""Least distance from a line of symmetry over the size of the body."""
 SHALLOW = 0.2
 """Depth over the length of the element there up to which a maximum is one of the boundary."""
 AROUND = np.array([[x, y] for x in (0, -1, 1) for y in (0, -1, 1)], float)
@@ -69,9 +71,9 @@ class LargestStresses(WithHints):
 Measure = Callable[[Stress], Array]
 
 
-def largest_stresses(body: BodyStress, pressed: BoolArray) -> LargestStresses:
+def largest_stresses(body: BodyStress, whole: TriangulatedBody, pressed: BoolArray) -> LargestStresses:
     """Look for the largest stresses; `pressed` (m,) are the elements that touch."""
-    search = _Search.of(body)
+    search = _Search(body=body, whole=whole, mirrors=_mirrors(body))
     problem, mesh = body.field.problem, body.field.mesh
     zones = {}
     for zone in problem.contact_zones:
@@ -92,70 +94,57 @@ def largest_stresses(body: BodyStress, pressed: BoolArray) -> LargestStresses:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Search:
-    """Starts below the boundary, and the stress there.
+    """A search for maxima of stress inside a body.
 
     Parameters
     ----------
     body : BodyStress
+    whole : stress at points that fill the body
     mirrors : (m,) whether an element is on a line of symmetry
-    length : (m,) of the elements [L]
-    points, depth : (2m, d, 2), (2m, d) of the starts below the start and the middle of each element
-    stress : at the starts one after the other; not a number outside the body
     """
 
     body: BodyStress
+    whole: TriangulatedBody
     mirrors: BoolArray
-    length: Array
-    points: Array
-    depth: Array
-    stress: Stress
-
-    @classmethod
-    def of(cls, body: BodyStress) -> "_Search":
-        """Place the starts."""
-        mesh = body.field.mesh
-        length = mesh.lengths
-        count = int(np.ceil(np.log(mesh.size / (FIRST * length.min())) / np.log(GROWTH)))
-        depth = np.repeat(FIRST * length[:, None] * GROWTH ** np.arange(count), 2, axis=0)
-        nodes, inward = mesh.nodes[mesh.elements[:, :2]].reshape(-1, 2), -mesh.normals[:, :2].reshape(-1, 2)
-        points = nodes[:, None] + depth[..., None] * inward[:, None]
-        stress = body.at(body.field.locate(points.reshape(-1, 2)))
-        return cls(body=body, mirrors=_mirrors(body), length=length, points=points, depth=depth, stress=stress)
 
     def largest(self, elements: IntArray, measure: Measure, surface: IntArray) -> StressPeak | None:
-        """The largest maximum inside that a search from below some elements finds, with its depth below others."""
-        if not len(elements):
+        """The largest maximum inside that is found from points below some elements, with its depth below others."""
+        start, depth = self._starts(elements, measure)
+        if not len(start):
             return None
-        values = np.nan_to_num(measure(self.stress), nan=-np.inf).reshape(self.depth.shape)
-        line, level = np.nonzero(
-            self._peaks(values) & np.repeat(np.isin(np.arange(len(values) // 2), elements), 2)[:, None]
-        )
-        order = np.argsort(-values[line, level])[:SEARCHES]
-        if not len(order):
-            return None
-        points, step = self.points[line[order], level[order]], STEP * self.depth[line[order], level[order]]
-        at, value, inside = self._climb(points, step, measure)
+        at, value, inside = self._climb(start, STEP * depth, measure)
         every = np.flatnonzero(~self.mirrors)
         for i in np.argsort(-np.where(inside, value, -np.inf))[: int(inside.sum())]:
             depth, element = self._distance(at[i], every)
             ring = self._values(at[i] + depth * RINGS, measure)
-            if depth > SHALLOW * self.length[every[element]] and (ring < value[i]).all():
+            if depth > SHALLOW * self.body.field.mesh.lengths[every[element]] and (ring < value[i]).all():
                 x, y = at[i].tolist()
                 return StressPeak(value=float(value[i]), point=(x, y), depth=self._distance(at[i], surface)[0])
         return None
 
-    def _peaks(self, values: Array) -> BoolArray:
-        """Whether each start (2m, d) is not lower than those at the next depths and beside it along the boundary."""
-        mesh = self.body.field.mesh
-        m = len(mesh.elements)
-        before = np.column_stack([2 * mesh.before + 1, 2 * np.arange(m)]).ravel()
-        after = np.column_stack([2 * np.arange(m) + 1, 2 * mesh.elements[:, 2]]).ravel()
-        low = np.full((len(values), 1), -np.inf)
-        neighbors = values[before], values[after], np.hstack([low, values[:, :-1]]), np.hstack([values[:, 1:], low])
-        return np.all([values >= other for other in neighbors], axis=0) & np.isfinite(values)
+    def _starts(self, elements: IntArray, measure: Measure) -> tuple[Array, Array]:
+        """Points (k, 2) below some elements that are larger than their neighbors, and their depths (k,)."""
+        whole, rim = self.whole, len(self.whole.element)
+        outer = np.append(~self.mirrors[whole.element], np.zeros(len(whole.points) - rim, bool))
+        values = np.where(outer, -np.inf, np.nan_to_num(measure(whole.stress), nan=-np.inf))
+        around = np.full(len(values), -np.inf)
+        for one, other in ((0, 1), (1, 2), (2, 0)):
+            ends = whole.triangles[:, one], whole.triangles[:, other]
+            np.maximum.at(around, ends[0], values[ends[1]])
+            np.maximum.at(around, ends[1], values[ends[0]])
+        sides = np.flatnonzero(~self.mirrors[whole.element])
+        depth, nearest = KDTree(whole.points[sides]).query(whole.points)
+        below = np.isin(whole.element[sides][nearest], elements)
+        start = np.flatnonzero(below & (values >= around) & np.isfinite(values) & (depth > 0))
+        start = start[values[start] > RISE * values[start].max(initial=0.0)]
+        start = start[np.argsort(-values[start])][:SEARCHES]
+        return whole.points[start], depth[start]
 
     def _climb(self, points: Array, step: Array, measure: Measure) -> tuple[Array, Array, BoolArray]:
-        """Go up from points (k, 2); the last ones, their values (k,), and whether all around is inside the body."""
+        """Go up from points (k, 2); the last ones, their values (k,), and whether all around is inside the body.
+
+        At a point that is larger than those around it, the parabola through them gives the next one.
+        """
         least, rows = SETTLED * step, np.arange(len(points))
         value, inside = np.zeros(len(points)), np.zeros(len(points), bool)
         for _ in range(MOST_STEPS):
@@ -164,9 +153,14 @@ class _Search:
             best = values.argmax(axis=1)
             points, value = around[rows, best], values[rows, best]
             inside = (best == 0) & np.isfinite(values).all(axis=1)
-            if (step <= least).all():
+            if ((step <= least) & (best == 0)).all():
                 break
-            step = np.where(best == 0, np.maximum(step / 2, least), step)
+            top = np.flatnonzero(inside)
+            further = points[top] + step[top, None] * _parabola(values[top])
+            gained = self._values(further, measure)
+            better = gained > value[top]
+            points[top[better]], value[top[better]] = further[better], gained[better]
+            step = np.where(best == 0, np.maximum(step * SHORTER, least), step)
         return self._mirrored(points), value, inside
 
     def _values(self, points: Array, measure: Measure) -> Array:
@@ -176,12 +170,16 @@ class _Search:
         return np.where(there, np.nan_to_num(measure(self.body.at(at)), nan=-np.inf), -np.inf)
 
     def _mirrored(self, points: Array) -> Array:
-        """Points (k, 2), those beyond lines of symmetry in their mirror image."""
+        """Points (k, 2), those beyond lines of symmetry in their mirror image, and none on such a line.
+
+        The stress on a boundary has other errors than that inside, which would draw the search there.
+        """
         mesh, result = self.body.field.mesh, points.copy()
         for edge in np.unique(mesh.edge[self.mirrors]):
             first = int(np.argmax(mesh.edge == edge))
             origin, normal = mesh.nodes[mesh.elements[first, 0]], mesh.normals[first, 1]
-            result -= 2 * np.maximum((result - origin) @ normal, 0.0)[:, None] * normal
+            away = (result - origin) @ normal
+            result -= (away + np.maximum(np.abs(away), BESIDE_LINE * mesh.size))[:, None] * normal
         return result
 
     def _distance(self, point: Array, elements: IntArray) -> tuple[float, int]:
@@ -194,6 +192,17 @@ class _Search:
         )
         places = reference_element.values(near) @ mesh.nodes[mesh.elements[elements[number]]]
         return float(np.hypot(*(places - point).T).min()), int(number)
+
+
+def _parabola(values: Array) -> Array:
+    """The place (k, 2), in steps, of the maximum of a parabola near values (k, 9) at `AROUND`, at most one away."""
+    fitted = np.linalg.pinv(np.column_stack([np.ones(9), AROUND, AROUND**2 / 2, AROUND.prod(axis=1)])) @ values.T
+    _, gx, gy, xx, yy, xy = fitted
+    curvature = np.stack([np.stack([xx, xy], axis=1), np.stack([xy, yy], axis=1)], axis=1)
+    falls = (xx < 0) & (xx * yy > xy * xy)
+    curvature[~falls] = -np.eye(2)
+    place = np.linalg.solve(curvature, -np.stack([gx, gy], axis=1)[..., None])[..., 0]
+    return np.where(falls[:, None], np.clip(place, -1, 1), 0.0)
 
 
 def _mirrors(body: BodyStress) -> BoolArray:

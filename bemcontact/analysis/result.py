@@ -248,7 +248,7 @@ class Result(Recorded):
             The result is that of a condensed problem, which has no body.
         """
         pressure, _ = self.contact_fields()
-        return largest_stresses(self._body_stress, pressure[:, 1] > 0)
+        return largest_stresses(self._body_stress, self.triangulated, pressure[:, 1] > 0)
 
     @cached_property
     def triangulated(self) -> TriangulatedBody:

@@ -27,6 +27,8 @@ class TriangulatedBody(WithHints):
     """Displacement (k, 2) [L]."""
     stress: Stress
     """Stress at the points; not a number where it is infinite."""
+    element: IntArray
+    """Boundary element (b,) on which, or at the start of which, each of the first b points lies."""
 
 
 def triangulated_body(body: BodyStress) -> TriangulatedBody:
@@ -39,4 +41,5 @@ def triangulated_body(body: BodyStress) -> TriangulatedBody:
         triangles=made.triangles,
         displacement=field.displacement(at)[..., 0],
         stress=body.at(at),
+        element=made.element,
     )
