@@ -437,12 +437,8 @@ class SurfaceGaps:
 def surface_gaps(body: Body, state: BoundaryState, contact: CondensedContact, solution: ContactSolution) -> SurfaceGaps:
     """Compare the deformed boundary of a solution with the surfaces, where its tools have moved them."""
     moved = contact.tools.displacement(solution.rigid_amplitudes)
-    return SurfaceGaps(
-        problem=body.problem,
-        outline=body.outline,
-        state=state,
-        tools=dict(zip(contact.tools.names, moved, strict=True)),
-    )
+    tools = dict(zip(contact.tools.names, moved, strict=True))
+    return SurfaceGaps(problem=body.problem, outline=body.outline, state=state, tools=tools)
 
 
 def _opposite(end: FaceEnd, feet: Array, normals: Array, flush: float) -> BoolArray:
