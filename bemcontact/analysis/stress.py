@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
 from bemcontact.checks.attributes import PLACE, WithHints, Words
+from bemcontact.options import StressMeasure
 
 
 class PointKind(StrEnum):
@@ -68,6 +69,17 @@ class Stress(WithHints):
         """Largest shear stress (k,) [p] in the plane: half the difference of the two principal stresses in it."""
         xx, yy, xy = self.components.T
         return np.hypot((xx - yy) / 2, xy)
+
+    def measured(self, measure: StressMeasure) -> Array:
+        """The values (k,) [p] of a stress that pictures show."""
+        match measure:
+            case StressMeasure.VON_MISES:
+                return self.von_mises
+            case StressMeasure.MAX_SHEAR:
+                return self.max_shear
+            case StressMeasure.ZZ:
+                return self.zz
+        return self.components[:, ("xx", "yy", "xy").index(measure.value)]
 
     @property
     def max_shear(self) -> Array:

@@ -9,7 +9,7 @@ from bemcontact.cli.arguments import FigureOption, JsonOption, RefineOption, Sou
 from bemcontact.cli.command import CommandOutput, modules, run
 from bemcontact.cli.terminal import Report
 from bemcontact.errors import OptionError
-from bemcontact.options import SolveOptions
+from bemcontact.options import SolveOptions, StressMeasure
 
 
 def solve(
@@ -20,12 +20,17 @@ def solve(
     json_file: JsonOption = None,
     vtk_file: Annotated[
         Path | None,
-        typer.Option("--vtk", metavar="FILE", help="Write the boundary; ends in .vtu or .vtk.", show_default=False),
+        typer.Option(
+            "--vtk", metavar="FILE", help="Write boundary and inside; ends in .vtu or .vtk.", show_default=False
+        ),
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option(metavar="FOLDER", help="Write a page with pictures, and tables.", show_default=False),
     ] = None,
+    stress: Annotated[
+        StressMeasure, typer.Option(help="Stress that pictures show; components are those of x, y and z.")
+    ] = StressMeasure.VON_MISES,
 ) -> None:
     """Compute the contact pressure, assess it, and print a table.
 
@@ -35,8 +40,8 @@ def solve(
     the spec, errors are not assessed. The exit status is 0 only if the solution of the equations is certified, and the
     accuracy is met.
 
-    FOLDER gets result.html (one page with pictures, to read and to send on), zones.csv, points.csv, result.json,
-    figures/ and spec.yaml; an earlier result there is replaced.
+    FOLDER gets result.html (one page with pictures, to read and to send on), zones.csv, points.csv, stress.csv (along
+    the edges), result.json, figures/ and spec.yaml; an earlier result there is replaced.
 
     If a spec has load cases, all of them and all combinations are solved; --case selects one.
 
@@ -44,6 +49,7 @@ def solve(
       bemcontact solve models/cylinder_on_plane.yaml
       bemcontact solve models/cylinder_on_plane.yaml --out roller
       bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
+      bemcontact solve models/cylinder_on_plane.yaml --figure shear.png --stress max_shear
       bemcontact solve models/bolt_in_plate.yaml --set material.young_modulus=2e6
       bemcontact solve models/cylinder_on_plane.yaml --accuracy 0.001
       bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak
@@ -63,12 +69,12 @@ def solve(
             if figure:
                 from bemcontact.report import figures
 
-                figures.save(figures.figure_of(results), figure)
+                figures.save(figures.figure_of(results, stress), figure)
             if out:
                 report("report", "")
                 from bemcontact.report import folder
 
-                folder.save_result(results, out, source.as_run())
+                folder.save_result(results, out, source.as_run(), stress)
 
         problem = source.problem(refine)
         with by_option("--start"):

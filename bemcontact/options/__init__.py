@@ -6,6 +6,7 @@ from bemcontact.options.declaration import STARTS as STARTS
 from bemcontact.options.declaration import ensure_known as ensure_known
 from bemcontact.options.declaration import ensure_whole as ensure_whole
 from bemcontact.options.declaration import named as named
+from bemcontact.options.drawing import StressMeasure as StressMeasure
 from bemcontact.options.solving import COMPARED as COMPARED
 from bemcontact.options.solving import USES as USES
 from bemcontact.options.solving import ComparisonKeywords as ComparisonKeywords

@@ -14,6 +14,7 @@ from bemcontact.analysis.mesh_study import MeshStudy
 from bemcontact.analysis.reproduction import Reproduction
 from bemcontact.analysis.result import Result
 from bemcontact.files import output
+from bemcontact.options import StressMeasure
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report import page, result_page, study_page
 from bemcontact.report import reproduction as paper_page
@@ -51,7 +52,7 @@ REPORT = Contents(
     title="report",
     page="report.html",
     numbers="report.json",
-    others=("contact.npz", "zones.csv", "points.csv", "spec.yaml"),
+    others=("contact.npz", "zones.csv", "points.csv", "stress.csv", "spec.yaml"),
     picture=re.compile(
         r"(problem|contacts|(pressure|gap)(-\d+)?|deformed|difference|convergence|history-[a-z0-9-]+)\.svg"
     ),
@@ -62,7 +63,7 @@ RESULT = Contents(
     title="result",
     page="result.html",
     numbers="result.json",
-    others=("zones.csv", "points.csv", "spec.yaml"),
+    others=("zones.csv", "points.csv", "stress.csv", "spec.yaml"),
     picture=re.compile(r"(problem|contacts|deformed|(contact|pressure|gap)(-\d+)?)\.svg"),
     keys=frozenset({"name", "version", "certified"}),
 )
@@ -129,10 +130,15 @@ def save(study: MeshStudy, folder: Path, spec: str | None = None) -> None:
             (temporary / "spec.yaml").write_text(spec, encoding="utf-8", newline="\n")
 
 
-def save_result(results: Result | CaseResults, folder: Path, spec: str | None = None) -> None:
+def save_result(
+    results: Result | CaseResults,
+    folder: Path,
+    spec: str | None = None,
+    stress: StressMeasure = StressMeasure.VON_MISES,
+) -> None:
     """Write a result, or those of all load cases, as a folder: page, numbers, tables, pictures, spec if given."""
     ensure_folder_writable(folder, RESULT)
-    pictures = {name: vector_graphic(figure) for name, figure in pictures_of(results).items()}
+    pictures = {name: vector_graphic(figure) for name, figure in pictures_of(results, stress).items()}
     text = result_page.render(results, pictures, spec)
     with _written(folder, RESULT, text, results.to_json(), pictures) as temporary:
         _write_tables(results, temporary, spec)

@@ -11,7 +11,7 @@ from bemcontact.problem import Problem, Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, bars_of, mesh_in_short, with_bar
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import contact_intervals, coordinate_size, facts, peak_of, peak_place, small, total_force
-from bemcontact.report.formatting import JsonObject, sentence_case, surface_in_words, vector, with_unit
+from bemcontact.report.formatting import JsonObject, number, sentence_case, surface_in_words, vector, with_unit
 from bemcontact.report.page import picture, template
 from bemcontact.report.verdicts import case_verdicts, overall, result_verdicts
 from bemcontact.report.zones import by_case, zone_rows
@@ -24,11 +24,13 @@ NOT_LOOKED_AT = (
 """What no verdict covers."""
 ZONE_PICTURES = {"contact": "close-up of the contact", "pressure": "pressure", "gap": "gap"}
 """Kind of a picture of one zone -> its caption."""
+MOST_PLACES = 6
+"""Number of places of infinite stress that are listed."""
 CAPTIONS = {
     "problem": "What was asked: the body, what holds and loads it, and the rigid surfaces",
     "contact": "Where the body touches, and how hard; displacements are to scale",
     "contacts": "Where the body touches in each load case; all pressures have one scale",
-    "deformed": "The deformed shape; the surfaces move with the magnification",
+    "deformed": "Stress on the deformed shape; the surfaces move with the magnification",
 }
 """Name of a picture -> its caption."""
 
@@ -57,6 +59,7 @@ def render(
         overall=overall(verdicts),
         headline=[*_headline(alone, units)] if alone else [],
         details=[*facts(alone, units)] if alone else [],
+        stresses=[(name, *row) for name, result in cases.items() for row in _stresses(result, units)],
         formulations=[] if comparisons is None else [*_formulations(comparisons)],
         cases=[_case(name, result, units) for name, result in cases.items()] if not alone else [],
         zones=[(name, row) for name, result in cases.items() for row in zone_rows(result.to_dict(), units)],
@@ -103,6 +106,37 @@ def _headline(record: JsonObject, units: Units) -> Iterator[tuple[str, str, str]
         yield "Largest displacement", with_unit(with_bar(bar["value"], bar["bar"]), units.length), where or ""
 
 
+def _stresses(result: Result, units: Units) -> Iterator[tuple[str, str, str]]:
+    """What a largest stress is of, its value and its place; where stress is infinite."""
+    if result.boundary is None:
+        return
+    largest = result.largest_stresses()
+    size = float(abs(result.boundary.points).max())
+    for zone, peak in largest.shear.items():
+        if peak is not None:
+            depth = with_unit(number(peak.depth), units.length)
+            yield f"shear below {zone}", _stress(peak.value, units), f"{_at(peak.point, units, size)}, {depth} deep"
+    if largest.inside is not None:
+        yield "von Mises, inside", _stress(largest.inside.value, units), _at(largest.inside.point, units, size)
+    if (peak := largest.boundary) is not None:
+        yield "von Mises, on the boundary", _stress(peak.value, units), f"{_at(peak.point, units, size)} on {peak.edge}"
+    if len(largest.singular):
+        places = [vector((x, y), scale=size) for x, y in largest.singular[:MOST_PLACES].tolist()]
+        more = len(largest.singular) - len(places)
+        listed = f"{', '.join(places)}{f' and {more} more places' if more else ''}"
+        yield "von Mises, at corners and edges", "infinite", f"at {listed}: the values above are those elsewhere"
+
+
+def _stress(value: float, units: Units) -> str:
+    """Write a stress; its error is not estimated."""
+    return with_unit(number(value, 4), units.stress)
+
+
+def _at(point: tuple[float, float], units: Units, size: float) -> str:
+    """Write a place."""
+    return f"at {vector(point, units.length, scale=size)}"
+
+
 def _case(name: str, result: Result, units: Units) -> dict[str, Any]:
     """A row in the table of load cases."""
     record, verdicts = result.to_dict(), result_verdicts(result)
@@ -135,12 +169,12 @@ def _formulations(comparisons: CaseComparisons) -> Iterator[dict[str, Any]]:
 def _envelope(cases: Mapping[str, Result], units: Units) -> Iterator[tuple[str, str, str, str]]:
     """Zone, largest peak of all load cases, the load case, and the place."""
     first = next(iter(cases.values()))
-    for number, zone in enumerate(first.contact.zone_names):
+    for order, zone in enumerate(first.contact.zone_names):
         infinite = [name for name, result in cases.items() if zone in result.accuracy.infinite]
         if infinite:
             yield zone, "infinite", ", ".join(infinite), NOTHING
             continue
-        own = (first.contact.zone == number).nonzero()[0]
+        own = (first.contact.zone == order).nonzero()[0]
         most = max(cases, key=lambda name: float(cases[name].solution.pressure[own].max()))
         result = cases[most]
         highest = own[int(result.solution.pressure[own].argmax())]

@@ -1,6 +1,6 @@
-"""The boundary of a result as a file for ParaView; only this module uses meshio.
+"""Boundary and inside of a result as a file for ParaView; only this module uses meshio.
 
-Points are written once for each element, so that tractions may jump from one element to the next.
+Points of the boundary are written once for each element, so that tractions may jump from one element to the next.
 """
 
 from importlib.util import find_spec
@@ -11,6 +11,7 @@ import numpy as np
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
 from bemcontact.files import output
+from bemcontact.options import StressMeasure
 
 FORMATS = {".vtu": "vtu", ".vtk": "vtk"}
 """Ending of a file that can be written -> the name of its format."""
@@ -25,11 +26,13 @@ def ensure_possible(path: Path) -> None:
 
 
 def save(result: Result, path: Path) -> None:
-    """Write the undeformed boundary of a result as three-noded lines with fields.
+    """Write the undeformed boundary of a result as three-noded lines, and its inside as triangles, with fields.
 
     Point data are ``displacement`` [L] and ``traction`` [p] (three components, the third zero), ``pressure`` [p], zero
-    off the contact points, and ``gap`` [L], not a number off them. Cell data is ``edge``, the number of the edge in the
-    spec, from 0. `ProblemError` for the result of a condensed problem; other errors as of `ensure_possible`.
+    off the contact points, ``gap`` [L], not a number off them, and the stresses ``stress_xx``, ``stress_yy``,
+    ``stress_xy``, ``stress_zz``, ``von_mises`` and ``max_shear`` [p], not numbers where stress is infinite. Inside,
+    traction is zero. Cell data is ``edge``, the number of the edge in the spec, from 0, and -1 for triangles.
+    `ProblemError` for the result of a condensed problem; other errors as of `ensure_possible`.
     """
     ensure_possible(path)
     pressure, gap = result.contact_fields()
@@ -37,23 +40,32 @@ def save(result: Result, path: Path) -> None:
     assert boundary is not None  # or there are no fields on it
     import meshio
 
-    lines = np.arange(boundary.points[..., 0].size).reshape(-1, 3)[:, [0, 2, 1]]  # the middle node comes last
+    inside, rim = result.triangulated, boundary.points[..., 0].size
+    lines = np.arange(rim).reshape(-1, 3)[:, [0, 2, 1]]  # the middle node comes last
+    none, on_rim = np.zeros(len(inside.points)), result.stress(boundary.points.reshape(-1, 2))
+    stresses = {
+        f"stress_{measure}" if measure.signed else str(measure): np.append(
+            on_rim.measured(measure), inside.stress.measured(measure)
+        )
+        for measure in StressMeasure
+    }
     mesh = meshio.Mesh(
-        _in_space(boundary.points),
-        [("line3", lines)],
+        np.vstack([_in_space(boundary.points), _in_space(inside.points)]),
+        [("line3", lines), ("triangle", rim + inside.triangles)],
         point_data={
-            "displacement": _in_space(boundary.displacement),
-            "traction": _in_space(boundary.traction),
-            "pressure": pressure.ravel(),
-            "gap": gap.ravel(),
+            "displacement": np.vstack([_in_space(boundary.displacement), _in_space(inside.displacement)]),
+            "traction": np.vstack([_in_space(boundary.traction), np.zeros((len(none), 3))]),
+            "pressure": np.append(pressure, none),
+            "gap": np.append(gap, np.full(len(none), np.nan)),
+            **stresses,
         },
-        cell_data={"edge": [np.asarray(boundary.edge, np.int64)]},
+        cell_data={"edge": [np.asarray(boundary.edge, np.int64), np.full(len(inside.triangles), -1, np.int64)]},
     )
     with output.whole_file(path) as temporary:
         mesh.write(temporary, file_format=FORMATS[path.suffix.lower()])
 
 
 def _in_space(vectors: Array) -> Array:
-    """Vectors (m, 3, 2) as (3m, 3), with a third component of zero."""
+    """Vectors (…, 2) as (k, 3), with a third component of zero."""
     flat = vectors.reshape(-1, 2)
     return np.column_stack([flat, np.zeros(len(flat))])

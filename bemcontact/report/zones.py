@@ -3,6 +3,7 @@
 import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,8 @@ ZONE_COLUMNS = (
 """Columns of zones.csv."""
 POINT_COLUMNS = ("case", "zone", "x", "y", "normal_x", "normal_y", "arc", "pressure", "gap", "touching")
 """Columns of points.csv."""
+STRESS_COLUMNS = ("case", "edge", "x", "y", "arc", "hoop", "pressure", "shear", "von_mises")
+"""Columns of stress.csv."""
 
 
 def by_case(results: Result | CaseResults) -> dict[str, Result]:
@@ -139,6 +142,28 @@ def _written(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
     return stream.getvalue()
 
 
+def stress_csv(results: Result | CaseResults) -> str:
+    """Write a line for each node of each element of each load case: stress along the edge, pressure, shear.
+
+    Where elements meet there is a line for either side. Stress is empty where it is infinite.
+    """
+    lines = (_stress_lines(case, result) for case, result in by_case(results).items())
+    return _written(STRESS_COLUMNS, chain.from_iterable(lines))
+
+
+def _stress_lines(case: str, result: Result) -> Iterator[list[Any]]:
+    """The lines of a result in `stress_csv`."""
+    for edge, along in result.boundary_stress().items():
+        values = [
+            part.ravel().tolist() for part in (along.arc, along.hoop, along.pressure, along.shear, along.von_mises)
+        ]
+        for point, *numbers in zip(along.points.reshape(-1, 2).tolist(), *values, strict=True):
+            yield [case, edge, *point, *("" if np.isnan(number) else number for number in numbers)]
+
+
 def tables_of(results: Result | CaseResults) -> Mapping[str, str]:
-    """All tables as CSV, by the names of their files."""
-    return {"zones.csv": zones_csv(results), "points.csv": points_csv(results)}
+    """All tables as CSV, by the names of their files; of a condensed problem there is none of stress."""
+    tables = {"zones.csv": zones_csv(results), "points.csv": points_csv(results)}
+    if all(result.boundary is not None for result in by_case(results).values()):
+        tables["stress.csv"] = stress_csv(results)
+    return tables

@@ -18,12 +18,11 @@ from bemcontact.report.figures.result import (
     draw_pressure,
     figure_of_result,
 )
-from bemcontact.report.figures.stress import StressMeasure, fill_with_stress
+from bemcontact.report.figures.stress import fill_with_stress
 from bemcontact.report.figures.study import draw_output, figures_of_study
 
 __all__ = [
     "FORMATS",
-    "StressMeasure",
     "close_ups",
     "draw_against",
     "draw_case_pressures",

@@ -12,6 +12,7 @@ from scipy.spatial import KDTree
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
 from bemcontact.bem.mesh import BoundaryState, element_curves
+from bemcontact.options import StressMeasure
 from bemcontact.report.bars import with_bar, without_digits_beyond
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import LEVEL
@@ -27,7 +28,7 @@ from bemcontact.report.figures.page import (
     without_glyph_warnings,
 )
 from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports
-from bemcontact.report.figures.stress import StressMeasure, fill_with_stress
+from bemcontact.report.figures.stress import fill_with_stress
 from bemcontact.report.figures.surfaces import surfaces_of
 from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, place_names
 from bemcontact.report.formatting import with_unit
@@ -136,7 +137,7 @@ def sketch_contact(
     state, problem, units = result.boundary, result.problem, units_of(result.contact)
     if state is None or problem is None:
         raise ValueError("the result of a condensed problem has no boundary to draw")
-    outline, loops = _draw_body(axes, state)
+    loops = _draw_body(axes, state)
     fans = [fan for fan in _fans(result, state) if zone in (None, fan.zone)]
     part = zone is not None and bool(fans)
     window = np.concatenate(loops)
@@ -168,7 +169,7 @@ def sketch_contact(
     drawn = np.concatenate([window, *beyond, *([] if part else covered), *symbols])
     frame_plan(axes, drawn, units.length)
     if stress is not None:
-        fill_with_stress(axes, result, stress, outline, window=window if part else None)
+        fill_with_stress(axes, result, stress, window=window if part else None)
 
     def write() -> None:
         with without_glyph_warnings():
@@ -187,8 +188,8 @@ def _inked(fan: Fan, tips: Array) -> Array:
     return (feet + np.linspace(0, 1, 9)[:, None, None] * (ends - feet)).reshape(-1, 2)
 
 
-def _draw_body(axes: Axes, state: BoundaryState) -> tuple[Path, list[Array]]:
-    """Draw the deformed body, and its undeformed outline where the two differ visibly; return outline and loops."""
+def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
+    """Draw the deformed body, and its undeformed outline where the two differ visibly; return loops (j, 2)."""
     samples = 5 if len(state.points) < MANY_ELEMENTS else 3
     before, after = (element_curves(at, samples) for at in (state.points, state.points + state.displacement))
     outline = outline_of(state, after)
@@ -197,7 +198,7 @@ def _draw_body(axes: Axes, state: BoundaryState) -> tuple[Path, list[Array]]:
     if float(np.abs(after - before).max()) > VISIBLE * float(np.ptp(after.reshape(-1, 2), axis=0).max()):
         undeformed = outline_of(state, before)
         axes.add_patch(PathPatch(undeformed, facecolor="none", edgecolor=GREY, linewidth=0.9, linestyle="dashed"))
-    return outline, [loop.reshape(-1, 2) for loop in loops_of(state, after)]
+    return [loop.reshape(-1, 2) for loop in loops_of(state, after)]
 
 
 def _draw_fan(axes: Axes, fan: Fan, tips: Array, spacing: float) -> None:

@@ -9,10 +9,11 @@ from bemcontact.analysis.result import Result
 from bemcontact.analysis.stress import PointKind
 from bemcontact.arrays import Array
 from bemcontact.bem.mesh import BoundaryState, element_curves
+from bemcontact.options import StressMeasure
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.contact import OVERHANG, body_extent, outline_of
 from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain
-from bemcontact.report.figures.stress import StressMeasure, fill_with_stress
+from bemcontact.report.figures.stress import fill_with_stress
 from bemcontact.report.figures.surfaces import reach_through, surfaces_of
 from bemcontact.report.figures.symbols import draw_ground
 from bemcontact.report.formatting import with_unit
@@ -40,8 +41,7 @@ def draw_deformed(axes: Axes, result: Result, stress: StressMeasure | None = Non
     after = element_curves(state.points + factor * state.displacement, 9)
     axes.add_collection(LineCollection(list(before), colors=GREY, linewidths=0.9, linestyles="dashed", zorder=2))
     axes.add_collection(LineCollection(list(after), colors=BLACK, linewidths=1.8, zorder=3))
-    outline = outline_of(state, after)
-    axes.add_patch(PathPatch(outline, facecolor=BODY, edgecolor="none", zorder=0))
+    axes.add_patch(PathPatch(outline_of(state, after), facecolor=BODY, edgecolor="none", zorder=0))
     _draw_touching(axes, result, state, after)
     covered = [before.reshape(-1, 2), after.reshape(-1, 2)]
     size = float(np.hypot(*body_extent(state)))
@@ -52,7 +52,7 @@ def draw_deformed(axes: Axes, result: Result, stress: StressMeasure | None = Non
     unit = units_of(result.contact).length
     frame_plan(axes, np.concatenate(covered), unit)
     if stress is not None:
-        fill_with_stress(axes, result, stress, outline, factor)
+        fill_with_stress(axes, result, stress, factor)
     known = (bar.value for bar in result.accuracy.bars if bar.quantity == "displacement")  # as the table has it
     most = next(known, None) or float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
     largest = with_unit(f"{most:.3g}", plain(unit))

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
+from bemcontact.options import StressMeasure
 from bemcontact.report.bars import with_bar
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.contact import (
@@ -44,7 +45,6 @@ from bemcontact.report.figures.result import (
     of_zone,
     show_around,
 )
-from bemcontact.report.figures.stress import StressMeasure
 from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import case_verdicts
 

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.options import StressMeasure
 from bemcontact.report.bars import with_bar
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import LEVEL
@@ -31,7 +32,6 @@ from bemcontact.report.figures.page import (
     short_label,
     wrapped,
 )
-from bemcontact.report.figures.stress import StressMeasure
 from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import Verdict, in_short, overall, result_verdicts
 

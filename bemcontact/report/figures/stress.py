@@ -1,17 +1,14 @@
 """Stress all over the body, as filled contours in the pictures of it."""
 
-from enum import StrEnum
-
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import PathPatch
-from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation, TriContourSet
 
 from bemcontact.analysis.result import Result
-from bemcontact.analysis.stress import PointKind, Stress
+from bemcontact.analysis.stress import PointKind
 from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.options import StressMeasure
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.page import BLACK, labeled
 
@@ -25,55 +22,21 @@ COLOURS, BOTH_SIGNS = "viridis", "RdBu_r"
 """Color maps of equivalent stresses, and of components, whose zero is white."""
 
 
-class StressMeasure(StrEnum):
-    """A stress that can be drawn."""
-
-    VON_MISES = "von_mises"
-    MAX_SHEAR = "max_shear"
-    XX = "xx"
-    YY = "yy"
-    XY = "xy"
-    ZZ = "zz"
-
-    @property
-    def words(self) -> str:
-        """Its name in words."""
-        names = {"von_mises": "von Mises stress", "max_shear": "largest shear stress"}
-        return names.get(self.value, f"stress σ{self.value}")
-
-    @property
-    def signed(self) -> bool:
-        """Whether it may be negative."""
-        return self not in (StressMeasure.VON_MISES, StressMeasure.MAX_SHEAR)
-
-    def of(self, stress: Stress) -> Array:
-        """Its values (k,) [p]."""
-        match self:
-            case StressMeasure.VON_MISES:
-                return stress.von_mises
-            case StressMeasure.MAX_SHEAR:
-                return stress.max_shear
-            case StressMeasure.ZZ:
-                return stress.zz
-        return stress.components[:, ("xx", "yy", "xy").index(self.value)]
-
-
 def fill_with_stress(
     axes: Axes,
     result: Result,
     measure: StressMeasure,
-    outline: Path,
     factor: float = 1.0,
     window: Array | None = None,
 ) -> None:
-    """Fill the deformed body, cut along its outline, with contours of a stress; mark the largest and infinite ones.
+    """Fill the deformed body with contours of a stress; mark the largest and infinite ones.
 
     Displacements are magnified by the factor. The colors are for what is inside the `window`, two corners (2, 2).
     Their scale is for all values but those on a small part of the area, and beside places where stress is infinite.
     """
     body = result.triangulated
     points = body.points + factor * body.displacement
-    values = measure.of(body.stress)
+    values = body.stress.measured(measure)
     shown = np.ones(len(points), bool)
     if window is not None:
         shown = np.all((points >= window[0]) & (points <= window[1]), axis=1)
@@ -90,7 +53,6 @@ def fill_with_stress(
         triangles, beyond, levels=levels, cmap=BOTH_SIGNS if measure.signed else COLOURS, zorder=0,
         extend="both" if measure.signed else "max" if beyond.max() > levels[-1] else "neither",
     )  # fmt: skip
-    drawn.set_clip_path(PathPatch(outline, transform=axes.transData))
     _mark(axes, points, np.where(shown & ~infinite, np.abs(values), -np.inf), points[infinite & shown])
     _add_bar(axes, drawn, result, measure)
 
