@@ -80,7 +80,7 @@ def stress_is_infinite(start: float, angle: float, faces: tuple[Face, Face], poi
     """
     clamped, free = ((held, held) in [face.held for face in faces] for held in (True, False))
     if clamped and free:
-        return angle > np.pi / 2 or np.sin(angle) ** 2 > 1 - poisson_ratio
+        return bool(angle > np.pi / 2 or np.sin(angle) ** 2 > 1 - poisson_ratio)
     return bool(_roots((start, angle, faces, poisson_ratio), GRID))
 
 

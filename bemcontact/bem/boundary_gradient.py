@@ -11,6 +11,9 @@ elements, in arc length, and the gradient is the mean of those with the traction
 is that of five nodes on one side. Values at middle nodes change with those at ends so that the change of displacement
 over an element, and the force on it, stay as they are. Fields of constant gradient stay exact, also on curved elements.
 
+A cubic derivative that keeps the displacement of middle nodes too was tried. It is better for Kirsch's hole, whose
+displacement has no error of collocation, and worse elsewhere: this error changes its sign from node to node.
+
 Lengths are over L0, and stresses over the shear modulus, as in `influence`.
 """
 

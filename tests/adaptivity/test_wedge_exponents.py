@@ -6,8 +6,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
-from bemcontact.adaptivity.wedge_exponents import FREE, Face, contact_face, slow_change, wedge_exponents
+from bemcontact.adaptivity.wedge_exponents import (
+    FREE,
+    Face,
+    contact_face,
+    slow_change,
+    stress_is_infinite,
+    wedge_exponents,
+)
 
 FIXED = Face(1.0, (True, True))
 ANGLES, RATIOS = st.floats(0.2, 2 * pi - 0.05), st.floats(-0.9, 0.49)
@@ -107,3 +115,39 @@ def test_near_a_right_angle_the_pressure_is_a_constant_and_a_slow_power(degrees,
     if abs(degrees) < 0.1 and abs(shear) > 0.1:
         slope = slow_change(0.0, pi / 2, (faces(0.0, pi / 2)[0], FREE), ratio, (0j, complex(shear * 1j))).slopes[0]
         assert change.at(0, 0.0, 0.5) == pytest.approx(slope * np.log(0.5), rel=0.01)
+
+
+ROLLERS = Face(1.0, (False, True)), Face(1.0, (True, False))
+
+LEVEL = contact_face(1j)
+
+
+@pytest.mark.parametrize(
+    ("angle", "faces", "infinite"),
+    [
+        (np.pi / 2, (FREE, FREE), False),
+        (np.pi, (FREE, FREE), False),
+        (3 * np.pi / 2, (FREE, FREE), True),
+        (2 * np.pi, (FREE, FREE), True),
+        (np.pi, (LEVEL, FREE), True),
+        (np.pi / 2, (LEVEL, FREE), False),
+        (np.pi / 2, ROLLERS, False),
+        (np.pi / 4, (FIXED, FREE), False),
+        (np.pi / 2, (FIXED, FREE), True),
+        (np.pi, (FREE, FIXED), True),
+        (np.pi / 2, (FIXED, FIXED), False),
+        (3 * np.pi / 2, (FIXED, FIXED), True),
+    ],
+)
+def test_infinite_stress(angle: float, faces: tuple[Face, Face], infinite: bool):
+    """Corners of Williams (1952): reentrant ones, ends of contact and of clamps; lines of symmetry are no corners."""
+    assert stress_is_infinite(0.0, angle, faces, 0.3) is infinite
+
+
+@pytest.mark.parametrize("poisson_ratio", [0.0, 0.3, 0.45])
+def test_least_angle_of_an_infinite_stress_at_a_clamp(poisson_ratio: float):
+    """Williams' equation sin²(λω) = (κ+1)²/4κ - λ² sin²ω/κ has λ = 1 at the angle from which stress is infinite."""
+    kappa = 3 - 4 * poisson_ratio
+    least = brentq(lambda w: np.sin(w) ** 2 * (1 + 1 / kappa) - (kappa + 1) ** 2 / 4 / kappa, 0, np.pi / 2)
+    for change, infinite in ((-1e-3, False), (1e-3, True)):
+        assert stress_is_infinite(0.0, least + change, (FIXED, FREE), poisson_ratio) is infinite
