@@ -2,8 +2,6 @@
 from .analysis.compare import compare as compare
 from .analysis.follow import follow as follow
 from .analysis.follow import sensitivities as sensitivities
-from .analysis.largest_stress import LargestStresses as LargestStresses
-from .analysis.largest_stress import StressPeak as StressPeak
 from .analysis.load_cases import CaseResults as CaseResults
 from .analysis.load_cases import solve_cases as solve_cases
 from .analysis.result import Result as Result
@@ -11,8 +9,11 @@ from .analysis.solve import condense as condense
 from .analysis.solve import random_starts as random_starts
 from .analysis.solve import solve as solve
 from .analysis.stress import EdgeStress as EdgeStress
+from .analysis.stress import LargestStresses as LargestStresses
 from .analysis.stress import PointKind as PointKind
 from .analysis.stress import Stress as Stress
+from .analysis.stress import StressPeak as StressPeak
+from .analysis.stress import TriangulatedBody as TriangulatedBody
 from .analysis.stress_operator import StressOperator as StressOperator
 from .analysis.stress_operator import stress_operator as stress_operator
 from .assessment.comparison import Comparison as Comparison

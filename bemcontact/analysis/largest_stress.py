@@ -7,17 +7,14 @@ around. On lines of symmetry the body goes on in its mirror image.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 from scipy.spatial import KDTree
 
 from bemcontact.analysis.body_stress import BodyStress
-from bemcontact.analysis.stress import Stress
-from bemcontact.analysis.triangulated_body import TriangulatedBody
+from bemcontact.analysis.stress import LargestStresses, Stress, StressPeak, TriangulatedBody
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
-from bemcontact.checks.attributes import PLACE, WithHints, Words
 
 RISE, SEARCHES = 0.3, 24
 """Part of the largest stress at a point from which on a search begins at others, and the most searches."""
@@ -33,39 +30,6 @@ AROUND = np.array([[x, y] for x in (0, -1, 1) for y in (0, -1, 1)], float)
 """A point and those around it, in steps."""
 RINGS = np.outer([0.5, 0.9], np.exp(2j * np.pi * np.arange(16) / 16)).ravel().view(float).reshape(-1, 2)
 """Points around a maximum, over its depth, at which stress must be lower; beside an infinite stress it is not."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class StressPeak(WithHints):
-    """A largest stress and its place."""
-
-    _called: ClassVar[Words] = {"point": PLACE, "value": ("peak", "max", "stress", "pressure")}
-
-    value: float
-    """Equivalent stress of von Mises, or largest shear stress [p]."""
-    point: tuple[float, float]
-    """Place (x, y) [L] in the undeformed body."""
-    depth: float
-    """Distance from the contact edges of the zone, or from the boundary [L]."""
-    edge: str | None = None
-    """Name of the edge on which it is; None inside."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class LargestStresses(WithHints):
-    """The largest stresses of a body."""
-
-    shear: dict[str, StressPeak | None]
-    """Largest shear stress below the contact of each zone, at a maximum inside the body; None if there is none: without
-    contact, or if it grows up to the boundary."""
-    inside: StressPeak | None
-    """Largest equivalent stress of von Mises at a maximum inside the body or on a line of symmetry; None if there is
-    none."""
-    boundary: StressPeak | None
-    """Largest equivalent stress of von Mises along the edges, but for lines of symmetry, and for edges along which it
-    grows up to an infinite one."""
-    singular: Array
-    """Places (s, 2) [L] where stress is infinite: the body has no largest stress if there are any."""
 
 
 Measure = Callable[[Stress], Array]

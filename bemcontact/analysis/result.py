@@ -6,10 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bemcontact.analysis.body_stress import BodyStress
-from bemcontact.analysis.largest_stress import LargestStresses, largest_stresses
-from bemcontact.analysis.stress import EdgeStress, Stress
-from bemcontact.analysis.triangulated_body import TriangulatedBody, triangulated_body
+from bemcontact.analysis.stress import EdgeStress, LargestStresses, Stress, TriangulatedBody
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy, together
 from bemcontact.assessment.certificate import Certificate
@@ -182,8 +179,10 @@ class Result(Recorded):
         return None if self.boundary is None else self.boundary.equilibrium_slack
 
     @cached_property
-    def _body_stress(self) -> BodyStress:
+    def _body_stress(self):  # its type costs the time of importing it
         """The stress in the body; `ProblemError` without a boundary."""
+        from bemcontact.analysis.body_stress import BodyStress
+
         pressure, _ = self.contact_fields()
         assert self.problem is not None
         assert self.boundary is not None
@@ -247,6 +246,8 @@ class Result(Recorded):
         ProblemError
             The result is that of a condensed problem, which has no body.
         """
+        from bemcontact.analysis.largest_stress import largest_stresses
+
         pressure, _ = self.contact_fields()
         return largest_stresses(self._body_stress, self.triangulated, pressure[:, 1] > 0)
 
@@ -259,6 +260,8 @@ class Result(Recorded):
         ProblemError
             The result is that of a condensed problem, which has no body.
         """
+        from bemcontact.analysis.triangulated_body import triangulated_body
+
         return triangulated_body(self._body_stress)
 
     def contact_fields(self) -> tuple[Array, Array]:

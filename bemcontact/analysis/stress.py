@@ -1,4 +1,4 @@
-"""Stress at points of a body and along its edges, and what is derived from its components."""
+"""Stress at points of a body, along its edges and all over it, what is derived from its components, and its peaks."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, IntArray
 from bemcontact.checks.attributes import PLACE, WithHints, Words
 from bemcontact.options import StressMeasure
 
@@ -133,3 +133,57 @@ class EdgeStress(WithHints):
         peak = "no largest hoop stress" if self.peak is None else f"hoop stress {self.peak:.6g} at {self.peak_at}"
         infinite = f", infinite at {len(self.singular)} places" if len(self.singular) else ""
         return f"<EdgeStress of {self.edge!r}: {len(self.arc)} elements, {peak}{infinite}>"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StressPeak(WithHints):
+    """A largest stress and its place."""
+
+    _called: ClassVar[Words] = {"point": PLACE, "value": ("peak", "max", "stress", "pressure")}
+
+    value: float
+    """Equivalent stress of von Mises, or largest shear stress [p]."""
+    point: tuple[float, float]
+    """Place (x, y) [L] in the undeformed body."""
+    depth: float
+    """Distance from the contact edges of the zone, or from the boundary [L]."""
+    edge: str | None = None
+    """Name of the edge on which it is; None inside."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LargestStresses(WithHints):
+    """The largest stresses of a body."""
+
+    shear: dict[str, StressPeak | None]
+    """Largest shear stress below the contact of each zone, at a maximum inside the body; None if there is none: without
+    contact, or if it grows up to the boundary."""
+    inside: StressPeak | None
+    """Largest equivalent stress of von Mises at a maximum inside the body or on a line of symmetry; None if there is
+    none."""
+    boundary: StressPeak | None
+    """Largest equivalent stress of von Mises along the edges, but for lines of symmetry, and for edges along which it
+    grows up to an infinite one."""
+    singular: Array
+    """Places (s, 2) [L] where stress is infinite: the body has no largest stress if there are any."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TriangulatedBody(WithHints):
+    """Displacement and stress on triangles that fill the undeformed body: for pictures and files.
+
+    The values at each point are those of `Result.stress` and `Result.displacement`. Between them they are not exact.
+    """
+
+    _called: ClassVar[Words] = {"points": PLACE, "triangles": ("elements", "cells", "faces", "connectivity")}
+
+    points: Array
+    """Points (k, 2) [L], those on the boundary first."""
+    triangles: IntArray
+    """Points (t, 3) of each triangle, counterclockwise."""
+    displacement: Array
+    """Displacement (k, 2) [L]."""
+    stress: Stress
+    """Stress at the points; not a number where it is infinite."""
+    element: IntArray
+    """Boundary element (b,) on which, or at the start of which, each of the first b points lies."""

@@ -86,14 +86,13 @@ def triangulation(mesh: Mesh) -> Triangulation:
         ends=np.tile(np.column_stack([ends[:-1], ends[1:]]), (m, 1)),
         after=np.column_stack([number[:, 1:], PIECES * follows]).ravel(),
     )
+    rim, points, triangles = _delaunay(pieces)
     for _ in range(ROUNDS):
-        rim = pieces.points
-        points = np.vstack([rim, _inner_points(pieces, rim)])
-        triangles = Delaunay(points - mesh.center).simplices
         missing = ~_are_sides(triangles, pieces.after)
         if not missing.any():
             break
         pieces = pieces.halved(missing)
+        rim, points, triangles = _delaunay(pieces)
     corners = points[triangles]
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     doubled = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
@@ -101,6 +100,13 @@ def triangulation(mesh: Mesh) -> Triangulation:
     triangles = np.where(doubled[:, None] < 0, triangles[:, ::-1], triangles)
     kept = (abs(doubled) > FLAT * longest**2) & within(corners.mean(axis=1), rim, rim[pieces.after])
     return Triangulation(points=points, triangles=triangles[kept], element=pieces.element, xi=pieces.ends[:, 0])
+
+
+def _delaunay(pieces: _Pieces) -> tuple[Array, Array, IntArray]:
+    """Points (b, 2) of the pieces, all points (k, 2), and the Delaunay triangles (t, 3) of these."""
+    rim = pieces.points
+    points = np.vstack([rim, _inner_points(pieces, rim)])
+    return rim, points, Delaunay(points - pieces.mesh.center).simplices.astype(int)
 
 
 def points_on(mesh: Mesh, element: IntArray, xi: Array) -> Array:

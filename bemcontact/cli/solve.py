@@ -32,7 +32,7 @@ def solve(
         StressMeasure, typer.Option(help="Stress that pictures show; components are those of x, y and z.")
     ] = StressMeasure.VON_MISES,
 ) -> None:
-    """Compute the contact pressure, assess it, and print a table.
+    r"""Compute the contact pressure, assess it, and print a table.
 
     Pressures are per UNDEFORMED length. If the spec states no elements, the program finds a mesh, and each number has
     an error bar. The accuracy is 1 % unless the spec or --accuracy gives another. A mesh that is stated on all edges,
@@ -49,7 +49,8 @@ def solve(
       bemcontact solve models/cylinder_on_plane.yaml
       bemcontact solve models/cylinder_on_plane.yaml --out roller
       bemcontact solve models/cylinder_on_plane.yaml --figure contact.png
-      bemcontact solve models/cylinder_on_plane.yaml --figure shear.png --stress max_shear
+      bemcontact solve models/cylinder_on_plane.yaml \
+        --figure shear.png --stress max_shear
       bemcontact solve models/bolt_in_plate.yaml --set material.young_modulus=2e6
       bemcontact solve models/cylinder_on_plane.yaml --accuracy 0.001
       bemcontact solve models/cylinder_on_plane.yaml --json - | jq .peak

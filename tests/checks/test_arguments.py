@@ -191,6 +191,7 @@ CALLS: dict[str, Call] = {
     "gap": (CONTACT.gap, {"pressure": P, "rigid_amplitudes": np.zeros(1)}),
     "rotations": (BODY.rotations, {"rigid_amplitudes": np.zeros(BODY.free_motions)}),
     "resultants": (CONTACT.resultants, {"pressure": P}),
+    "moments": (CONTACT.moments, {"pressure": P}),
     "forces": (CONTACT.forces, {"pressure": P}),
     "tool_reactions": (CONTACT.tool_reactions, {"pressure": P}),
     "in_order": (CONTACT.in_order, {"index": np.arange(4)}),

@@ -307,7 +307,7 @@ def test_figure_of_all_cases(tmp_path: Path):
     ("arguments", "words"),
     [
         (("solve", "--case", "raisd"), "--case raisd: case: unknown … 'raisd' … 'raised'"),
-        (("compare",), "load_cases: choose … as case (in Python by with_case): off the middle, raised,"),
+        (("compare", "--refine", "1,2"), "--refine … one load case; … --case"),
         (("solve", "--vtk", "it.vtu"), "--vtk … one load case; … --case"),
         (
             ("solve", "--set", "tools.press.force.y=1000"),

@@ -12,6 +12,7 @@ from mesh_studies import punch, roller
 
 import bemcontact
 from bemcontact.analysis import compare as comparing
+from bemcontact.analysis.case_comparisons import compare_cases
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.options import ComparisonOptions
 from bemcontact.report.schema import RESULTS, schema
@@ -90,6 +91,7 @@ def of_each_kind() -> dict[str, list[Any]]:
             bemcontact.solve(contact, "qp1", starts=2),
         ],
         "cases": [bemcontact.solve_cases(cases)],
+        "case_report": [compare_cases(ComparisonOptions.of(), cases)],
         "comparison": [bemcontact.compare(contact, starts=2)],
         "study": [
             bemcontact.study(roller(), {"conditions.top.pressure": [20.0, -1.0]}),

@@ -56,7 +56,7 @@ def test_the_file_holds_the_boundary_element_by_element(tmp_path: Path, ending: 
     vtk.save(result, tmp_path / f"block{ending}")
     assert [path.name for path in tmp_path.iterdir()] == [f"block{ending}"]
     found = meshio.read(tmp_path / f"block{ending}", ending[1:].lower())
-    assert [cells.type for cells in found.cells] == ["line3"]
+    assert [cells.type for cells in found.cells] == ["line3", "triangle"]
     start_end_middle = [0, 2, 1]  # the order of VTK's quadratic edge
     at = found.cells[0].data
     assert sorted(at.ravel()) == [*range(3 * len(EDGES))]  # no point belongs to two elements
@@ -70,6 +70,27 @@ def test_the_file_holds_the_boundary_element_by_element(tmp_path: Path, ending: 
     ]:
         assert (values[at][..., :2] == expected[:, start_end_middle]).all()
         assert (values[:, 2] == 0).all()
+
+
+def test_the_inside_has_the_constant_stress_of_the_block(tmp_path: Path):
+    """σ = diag(-2, -3), σzz = ν (σxx + σyy) = -1.5; the triangles fill the block, and move as ε and its corner say."""
+    vtk.save(analysis.solve(problem()), tmp_path / "block.vtu")
+    found = meshio.read(tmp_path / "block.vtu")
+    triangles = found.cells[1].data
+    a, b, c = np.moveaxis(found.points[triangles, :2], 1, 0)
+    areas = ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2
+    assert areas.min() > 0
+    assert areas.sum() == pytest.approx(4)
+    assert (found.cell_data["edge"][1] == -1).all()
+    expected = {
+        "stress_xx": -2.0, "stress_yy": -3.0, "stress_xy": 0.0, "stress_zz": -1.5, "max_shear": 0.75,
+        "von_mises": np.sqrt(((2 - 3) ** 2 + (3 - 1.5) ** 2 + (1.5 - 2) ** 2) / 2),
+    }  # fmt: skip
+    for name, value in expected.items():
+        assert found.point_data[name] == pytest.approx(np.full(len(found.points), value), abs=1e-8)
+    inside = np.unique(triangles)
+    stretch = np.array([-2 + 0.3 * 3 + 0.3 * 1.5, -3 + 0.3 * 2 + 0.3 * 1.5]) / 1000
+    assert found.point_data["displacement"][inside, :2] == pytest.approx(found.points[inside, :2] * stretch, abs=1e-10)
 
 
 def test_pressure_and_gap_are_on_the_elements_of_their_zone(tmp_path: Path):
@@ -88,7 +109,8 @@ def test_tractions_jump_at_the_end_of_a_zone(tmp_path: Path):
     """The corner of floor and right edge: 3 upwards on the one side, 2 to the left on the other."""
     vtk.save(analysis.solve(problem()), tmp_path / "block.vtu")
     found = meshio.read(tmp_path / "block.vtu")
-    here = (found.points[:, :2] == [2, 0]).all(axis=1)
+    here = np.flatnonzero((found.points[:, :2] == [2, 0]).all(axis=1))
+    here = here[np.isin(here, found.cells[0].data)]
     assert np.sort(found.point_data["traction"][here, :2], axis=0) == pytest.approx(
         np.array([[-2.0, 0.0], [0.0, 3.0]]), rel=1e-8, abs=1e-8
     )

@@ -122,7 +122,7 @@ def draw_case_contacts(places: Sequence[Axes], cases: CaseResults, shown: Sequen
     If the only zone is small beside the body in all of them, close-ups are drawn.
     """
     results = [cases.results[name] for name in shown]
-    scale, zones = common_scale(results), results[0].contact.zone_names if results else ()
+    scale, zones = common_scale(results), [name for result in results[:1] for name in result.contact.zone_names]
     near = len(zones) == 1 and all(close_ups(result, TINY) for result in results if result.touching.any())
     for axes, name in zip(places, shown, strict=True):
         result = cases.results[name]

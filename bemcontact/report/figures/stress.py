@@ -48,7 +48,7 @@ def fill_with_stress(
     low = -size if measure.signed else 0.0
     levels = MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, size)
     beyond = np.where(infinite, 2.0 * levels[-1], values)
-    triangles = Triangulation(*points.T, body.triangles)
+    triangles = Triangulation(points[:, 0], points[:, 1], body.triangles)
     drawn = axes.tricontourf(
         triangles, beyond, levels=levels, cmap=BOTH_SIGNS if measure.signed else COLOURS, zorder=0,
         extend="both" if measure.signed else "max" if beyond.max() > levels[-1] else "neither",

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from drawings import block_in_a_corner
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mesh_studies import punch
 from tool_problems import FREE, FREE_CASES, made, not_met, of_peaks
@@ -19,7 +20,7 @@ from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.problem import Problem, Units
 from bemcontact.report import figures
 from bemcontact.report.facts import peak_of
-from bemcontact.report.figures.result import draw_case_peaks
+from bemcontact.report.figures.load_cases import shown_cases
 from bemcontact.report.verdicts import case_verdicts, in_short
 
 MODELS = Path(__file__).parents[3] / "models"
@@ -30,34 +31,50 @@ def found() -> CaseResults:
     return not_met(bemcontact.solve_cases(made(FREE, **FREE_CASES)))
 
 
-def test_each_case_has_its_curves_and_its_bar():
-    """Two pieces of boundary for each case, with the pressures of its own; bars as long as the peaks."""
-    above, below = figures.figure_of(found()).axes
-    curves = [line for line in above.lines if len(line.get_xdata()) > 2]
-    assert len(curves) == 2 * len(found().results)
-    pressures = [max(line.get_ydata()) for line in curves]
-    for number, result in enumerate(found().results.values()):
-        assert max(pressures[2 * number : 2 * number + 2]) == pytest.approx(result.solution.pressure.max())
-    legend = above.get_legend()
-    assert legend is not None
-    assert [text.get_text() for text in legend.get_texts()] == [*found().results]
-    assert [bar.get_width() for bar in below.patches] == pytest.approx(
-        [result.solution.pressure.max() for result in found().results.values()]
-    )
-    assert [label.get_text() for label in below.get_yticklabels()] == [*found().results]
+def case_axes(cases: CaseResults) -> tuple[list[Axes], list[Axes]]:
+    """The pictures of load cases, and the panels of pressures."""
+    axes, count = figures.figure_of(cases).axes, len(shown_cases(cases))
+    return axes[:count], axes[count:]
+
+
+def test_each_case_has_its_picture_and_its_curves():
+    """A picture with the name and the peak of each; in each panel the curves of all, and the largest of all."""
+    contacts, panels = case_axes(found())
+    results = found().results
+    assert [axes.get_title(loc="left").split(":")[0] for axes in contacts] == [*results]
+    first = next(iter(results.values())).contact
+    assert len(panels) == len(first.zone_names)
+    for axes, zone in zip(panels, range(len(first.zone_names)), strict=True):
+        own = first.zone == zone
+        curves = [line for line in axes.lines if len(line.get_xdata()) > 2]
+        assert [line.get_label() for line in curves] == [*results]
+        for line, result in zip(curves, results.values(), strict=True):
+            assert np.sort(line.get_ydata()) == pytest.approx(np.sort(result.solution.pressure[own]))
+        (band,) = axes.collections
+        highest = np.max([result.solution.pressure[own] for result in results.values()])
+        assert band.get_datalim(axes.transData).y1 == pytest.approx(highest)
+
+
+def test_cases_beyond_those_that_are_drawn_are_the_ones_with_small_forces():
+    """Nine pictures at most, in the order of the cases."""
+    one = next(iter(found().results.values()))
+    sizes = [3, 9, 1, 7, 5, 2, 8, 6, 4, 10]
+    results = {
+        f"{size}": replace(one, footprint=replace(one.footprint, forces={"floor": (0.0, float(size))}))
+        for size in sizes
+    }
+    assert shown_cases(replace(found(), results=results)) == [str(size) for size in sizes if size > 1]
 
 
 @pytest.mark.parametrize(("of_wind", "of_others"), [(None, 4e-3), (2.3e-3, 0.2), (0.5, 1e-4)])
 def test_pictures_write_peaks_with_the_digits_of_the_table(of_wind: float | None, of_others: float):
-    """Where a peak has an error bar, its number has no digit beyond it, in curves, in the deformed body and in bars."""
+    """Where a peak has an error bar, its number has no digit beyond it, in curves, in bodies and above them."""
     results = {
         name: replace(one, accuracy=of_peaks(one, of_wind if name == "wind" else of_others))
         for name, one in found().results.items()
     }
-    cases = replace(found(), results=results)
-    axes = Figure().add_subplot()
-    draw_case_peaks(axes, cases)
-    written = [text.get_text() for text in axes.texts]
+    contacts, _ = case_axes(replace(found(), results=results))
+    written = [axes.get_title(loc="left").split(": ")[1] for axes in contacts]
     assert written == [peak_of(one.to_dict(), NO_UNITS) for one in results.values()]
     axes = Figure().add_subplot()
     figures.draw_pressure(axes, results["wind"])
@@ -88,8 +105,11 @@ def test_one_result_has_its_own_figure():
 
 
 def test_result_page_has_contact_pressure_gap_and_shape(result: analysis.Result):
-    contact, *panels, shape = figures.figure_of_result(result).axes
-    pressures, gaps = panels[: len(panels) // 2], panels[len(panels) // 2 :]
+    axes = figures.figure_of_result(result).axes
+    contact, (shape,) = axes[0], [item for item in axes if "deformed shape" in item.get_title(loc="left")]
+    pressures = [item for item in axes if item.get_ylabel().startswith("pressure")]
+    gaps = [item for item in axes if item.get_ylabel().startswith("gap")]
+    assert any("von Mises stress" in item.get_ylabel() for item in axes)
     assert contact.get_title(loc="left").startswith("contact pressure, displacements to scale")
     assert contact.get_aspect() == 1
     zones = len(result.contact.zone_names)
@@ -163,13 +183,14 @@ def test_infinite_pressures_are_cut_off_at_three_times_the_mean():
     one = on_a_punch().results["high"]
     assert one.solution.pressure.max() > 100
     page = figures.figure_of(one)
-    assert page.axes[1].get_ylim()[1] == pytest.approx(3 * 15, rel=1e-3)
+    (pressure,) = [item for item in page.axes if item.get_ylabel().startswith("pressure")]
+    assert pressure.get_ylim()[1] == pytest.approx(3 * 15, rel=1e-3)
     assert "infinite in foot: cut off" in texts_of(page)
     assert "peak" not in texts_of(page)
     assert f"{one.solution.pressure.max():.5g}" not in texts_of(page)
-    above, below = figures.figure_of(on_a_punch()).axes
-    assert above.get_ylim()[1] == pytest.approx(3 * 15, rel=1e-3)
-    assert [text.get_text() for text in below.texts] == ["infinite", "infinite"]
+    contacts, (panel,) = case_axes(on_a_punch())
+    assert panel.get_ylim()[1] == pytest.approx(3 * 15, rel=1e-3)
+    assert [axes.get_title(loc="left") for axes in contacts] == ["low: infinite in foot", "high: infinite in foot"]
 
 
 def test_color_of_the_title_is_that_of_the_worse_verdict():
@@ -187,7 +208,9 @@ def test_color_of_the_title_is_that_of_the_worse_verdict():
 def test_panels_show_a_small_contact_and_about_its_width_to_either_side(name: str):
     """At least a sixth of the axis is contact; the largest value that is drawn in the frame fills it."""
     result = analysis.solve(spec.load(MODELS / f"{name}.yaml"))
-    _, pressure, gap, _ = figures.figure_of_result(result).axes
+    axes = figures.figure_of_result(result).axes
+    (pressure,) = [item for item in axes if item.get_ylabel().startswith("pressure")]
+    (gap,) = [item for item in axes if item.get_ylabel().startswith("gap")]
     arcs = [s for item in result.footprint.intervals for s in (item.start_arc, item.end_arc)]
     for axes in (pressure, gap):
         low, high = axes.get_xlim()
@@ -239,3 +262,11 @@ def test_contact_across_the_end_of_a_closed_zone_is_one_curve():
             rises = np.diff(y)[np.diff(y) != 0] > 0
             assert (np.diff(rises.astype(int)) != 0).sum() == 1
             assert np.trapezoid(y, x) == pytest.approx(result.contact.weights @ result.solution.pressure, rel=0.02)
+
+
+@pytest.mark.parametrize("path", sorted(MODELS.rglob("*.yaml")), ids=lambda path: path.stem)
+def test_the_picture_of_each_model_can_be_drawn(path: Path):
+    """Contact up to a clamp, all round a hole, of a slit and under load cases; the largest stress is in its colors."""
+    problem = spec.load(path)
+    results = bemcontact.solve_cases(problem) if problem.load_cases else bemcontact.solve(problem)
+    figures.vector_graphic(figures.figure_of(results))
