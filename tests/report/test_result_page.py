@@ -1,0 +1,100 @@
+"""The page of a result: whole, with its numbers, and what is proved, estimated and not looked at apart."""
+
+from dataclasses import replace
+
+import pytest
+from page_reader import ensure_self_contained, read
+from results import EACH, cases, condensed, punched, rolled
+from tool_problems import FREE, FREE_CASES, made
+
+from bemcontact.analysis.case_comparisons import compare_cases
+from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.assessment.certificate import HEADINGS, CertificateKind
+from bemcontact.options import ComparisonOptions
+from bemcontact.report.bars import NOTHING
+from bemcontact.report.contact_words import units_of
+from bemcontact.report.facts import peak_of, total_force
+from bemcontact.report.figures import pictures_of, vector_graphic
+from bemcontact.report.result_page import NOT_LOOKED_AT, render
+from bemcontact.report.zones import zone_rows
+
+
+def together(text: str) -> str:
+    """A text without blanks: cells of a table have none between them."""
+    return text.replace(" ", "")
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_the_page_is_whole_and_needs_nothing_else(name: str):
+    results = EACH[name]()
+    pictures = {key: vector_graphic(figure) for key, figure in pictures_of(results).items()}
+    page = render(results, pictures, "name: <x>")
+    reader = read(page)
+    ensure_self_contained(page, reader)
+    shown = [attrs for tag, attrs in reader.tags if tag == "img"]
+    assert len(shown) == len(pictures)
+    assert all(picture["alt"] for picture in shown)
+    assert "name: <x>" in reader.text
+
+
+def test_the_head_has_the_answer_with_its_errors():
+    """Peak, force, contact and displacement as in the terminal, before the verdicts."""
+    record, units = rolled().to_dict(), units_of(rolled().contact)
+    text = read(render(rolled(), {}, None)).text
+    head = text[: text.index("Equations:")]
+    assert peak_of(record, units) in head
+    assert total_force(record, units) in head
+    assert "± " in head[head.index("Largest displacement") :]
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_each_zone_has_its_row(name: str):
+    results = EACH[name]()
+    text = read(render(results, {}, None)).text
+    for result in cases().results.values() if name == "cases" else [results]:
+        for row in zone_rows(result.to_dict(), units_of(result.contact)):
+            for words in (words for words in row.values() if words != NOTHING):
+                assert together(words) in together(text)
+
+
+def test_proved_estimated_and_not_looked_at_are_apart():
+    """What is not certified is not called proved, and what was not assessed not estimated."""
+    sure = read(render(rolled(), {}, None)).text
+    assert "Proved unique solution proved" in sure
+    assert "Estimated error at most" in sure
+    assert f"Not looked at {NOT_LOOKED_AT}" in sure
+    certificate = replace(rolled().certificate, kind=CertificateKind.LOCAL, heading=HEADINGS[CertificateKind.LOCAL])
+    doubtful = replace(rolled(), certificate=certificate, accuracy=Accuracy(asked=None, reason="nobody asked"))
+    text = read(render(doubtful, {}, None)).text
+    assert "Not proved local only" in text or f"Not proved {certificate.heading}" in text
+    assert "Not estimated not assessed" in text
+
+
+def test_stress_that_is_infinite_is_told_before_its_picture_is_believed():
+    text = read(render(punched(), {}, None)).text
+    assert together("von Mises, at corners and edges infinite at (2, 0)") in together(text)
+    assert "Their errors are not estimated" in text
+    assert 'id="stress"' not in render(condensed(), {}, None)
+
+
+def test_load_cases_have_the_largest_of_all():
+    """The largest peak of each zone, and in which load case."""
+    text = read(render(cases(), {}, None)).text
+    assert text.startswith(f"{cases().name}: contact")
+    for number, zone in enumerate(next(iter(cases().results.values())).contact.zone_names):
+        own = {
+            name: result.solution.pressure[result.contact.zone == number].max()
+            for name, result in cases().results.items()
+        }
+        most = max(own, key=own.__getitem__)
+        assert f"{zone}{own[most]:.5g}{most}(" in together(text[text.index("Largest of all load cases") :])
+
+
+def test_formulations_are_compared_under_each_load_case():
+    """The page says of each whether it solves the problem; the head says what the answer is first."""
+    compared = compare_cases(ComparisonOptions.of(["qp3"]), made(FREE, **FREE_CASES))
+    text = together(read(render(compared.answers, {}, None, compared)).text)
+    for case, level in compared.levels.items():
+        (contender,) = level.comparison.contenders
+        assert f"{case}QP3{together(contender.verdict.outcome)}" in text
+    assert text.index("LoadcaseEquations") < text.index("LoadcaseFormulation")

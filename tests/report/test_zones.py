@@ -1,0 +1,85 @@
+"""Tables of zones, points and stresses: their numbers are those of the results, and add up."""
+
+import csv
+import io
+
+import numpy as np
+import pytest
+from results import EACH, cases, condensed, punched, rolled
+
+from bemcontact.report.contact_words import units_of
+from bemcontact.report.zones import by_case, points_csv, stress_csv, tables_of, zone_rows, zones_csv
+
+
+def read(text: str) -> list[dict[str, str]]:
+    return [*csv.DictReader(io.StringIO(text))]
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_zones_have_the_forces_and_moments_that_add_up_to_the_resultant(name: str):
+    """One line for each interval, and for a zone without one; what is of the zone stands in each of its lines."""
+    results = EACH[name]()
+    lines = read(zones_csv(results))
+    for case, result in by_case(results).items():
+        own = {line["zone"]: line for line in lines if line["case"] == case}
+        assert [*own] == [*result.contact.zone_names]
+        force = np.sum([[float(line["force_x"]), float(line["force_y"])] for line in own.values()], axis=0)
+        where = result.footprint.resultant
+        assert force == pytest.approx(where.force, abs=1e-12 * np.hypot(*force))
+        moment = sum(float(line["moment"]) for line in own.values())
+        assert moment == pytest.approx(where.moment, abs=1e-9 * max(1.0, abs(where.moment)))
+        count = sum(line["case"] == case and line["interval"] != "" for line in lines)
+        assert count == len(result.footprint.intervals)
+
+
+def test_errors_in_the_table_are_those_of_the_error_bars():
+    """Absolute ones, in the unit of the number before them; unknown ones and infinite peaks are empty."""
+    (line,) = read(zones_csv(rolled()))
+    for quantity, column in (("peak", "peak"), ("length", "length")):
+        bar = rolled().accuracy.bar_of(quantity, "foot")
+        assert float(line[column]) == pytest.approx(bar.value, rel=1e-6)  # the bar has it before the polish
+        assert float(line[f"{column}_error"]) == pytest.approx(bar.bar * bar.value)
+    (infinite, *_) = read(zones_csv(punched()))
+    assert infinite["peak"] == infinite["peak_error"] == infinite["peak_x"] == ""
+    (unknown, *_) = read(zones_csv(condensed()))
+    assert unknown["peak_error"] == unknown["length_error"] == ""
+
+
+def test_points_are_listed_along_the_boundary():
+    """The trapezoidal sum of the weights is the force: each point is there once, with its pressure and gap."""
+    lines = read(points_csv(rolled()))
+    contact = rolled().contact
+    assert len(lines) == contact.size
+    assert np.diff([float(line["arc"]) for line in lines]).min() > 0
+    pressure = {(float(line["x"]), float(line["y"])): float(line["pressure"]) for line in lines}
+    assert [pressure[tuple(point)] for point in contact.points.tolist()] == rolled().solution.pressure.tolist()
+    assert sum(int(line["touching"]) for line in lines) == rolled().touching.sum()
+
+
+def test_stress_along_edges_has_the_pressure_of_the_contact():
+    """At the nodes in contact it is that on the body; where stress is infinite nothing is written."""
+    lines, edges = read(stress_csv(rolled())), rolled().problem.edges_of("foot")
+    here = {(line["x"], line["y"]): float(line["pressure"]) for line in lines if line["edge"] in edges}
+    known = {(line["x"], line["y"]): float(line["pressure"]) for line in read(points_csv(rolled()))}
+    peak = max(known.values())
+    shared = here.keys() & known.keys()
+    assert len(shared) > 10
+    assert all(here[place] == pytest.approx(known[place], abs=1e-6 * peak) for place in shared)
+    assert {line["hoop"] for line in read(stress_csv(punched()))} > {""}
+
+
+def test_a_condensed_problem_has_no_stress():
+    assert {*tables_of(condensed())} == {"zones.csv", "points.csv"}
+    assert {*tables_of(cases())} == {"zones.csv", "points.csv", "stress.csv"}
+
+
+def test_rows_say_in_words_what_a_zone_does():
+    """Its place, its peak with the error, its force; an infinite pressure has its intensity."""
+    units = units_of(rolled().contact)
+    (row,) = zone_rows(rolled().to_dict(), units)
+    assert row["zone"] == "foot"
+    assert "±" in row["peak"]
+    assert row["intensity"] == "–"
+    (row,) = zone_rows(punched().to_dict(), units)
+    assert row["peak"] == "infinite"
+    assert row["intensity"].startswith("K = ")
