@@ -139,7 +139,7 @@ def save_result(
     """Write a result, or those of all load cases, as a folder: page, numbers, tables, pictures, spec if given."""
     ensure_folder_writable(folder, RESULT)
     pictures = {name: vector_graphic(figure) for name, figure in pictures_of(results, stress).items()}
-    text = result_page.render(results, pictures, spec)
+    text = result_page.render(results, pictures, spec, stress=stress)
     with _written(folder, RESULT, text, results.to_json(), pictures) as temporary:
         _write_tables(results, temporary, spec)
 

@@ -7,6 +7,7 @@ from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.contender import OUTCOMES
+from bemcontact.options import StressMeasure
 from bemcontact.problem import Problem, Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, bars_of, mesh_in_short, with_bar
 from bemcontact.report.contact_words import units_of
@@ -22,7 +23,7 @@ NOT_LOOKED_AT = (
     "surfaces do not yield. Whether the input is that of your part: compare the picture of the problem with it."
 )
 """What no verdict covers."""
-ZONE_PICTURES = {"contact": "close-up of the contact", "pressure": "pressure", "gap": "gap"}
+ZONE_PICTURES = {"contact": "close-up of the contact, {stress}", "pressure": "pressure", "gap": "gap"}
 """Kind of a picture of one zone -> its caption."""
 MOST_PLACES = 6
 """Number of places of infinite stress that are listed."""
@@ -30,7 +31,7 @@ CAPTIONS = {
     "problem": "What was asked: the body, what holds and loads it, and the rigid surfaces",
     "contact": "Where the body touches, and how hard; displacements are to scale",
     "contacts": "Where the body touches in each load case; all pressures have one scale",
-    "deformed": "Stress on the deformed shape; the surfaces move with the magnification",
+    "deformed": "{stress} on the deformed shape; the surfaces move with the magnification",
 }
 """Name of a picture -> its caption."""
 
@@ -40,6 +41,7 @@ def render(
     pictures: Mapping[str, bytes],
     spec: str | None,
     comparisons: CaseComparisons | None = None,
+    stress: StressMeasure = StressMeasure.VON_MISES,
 ) -> str:
     """Write the page of a result, or of all load cases, as HTML that needs no other file.
 
@@ -71,7 +73,7 @@ def render(
         infinite=any(result.accuracy.infinite for result in cases.values()),
         assessed=any(result.accuracy.met is not None for result in cases.values()),
         not_looked_at=NOT_LOOKED_AT,
-        pictures=[_picture(name, svg, first) for name, svg in pictures.items()],
+        pictures=[_picture(name, svg, first, stress) for name, svg in pictures.items()],
         spec=spec,
     )
 
@@ -196,7 +198,7 @@ def _notes(cases: Mapping[str, Result]) -> Iterator[str]:
         yield f"{where}{sentence_case(note)}."
 
 
-def _picture(name: str, svg: bytes, first: Result) -> Any:
+def _picture(name: str, svg: bytes, first: Result, stress: StressMeasure) -> Any:
     """A picture with its caption and text alternative."""
     kind, _, number = name.partition("-")
     zones = first.contact.zone_names
@@ -204,4 +206,5 @@ def _picture(name: str, svg: bytes, first: Result) -> Any:
         f"{zones[int(number) - 1]}: {ZONE_PICTURES[kind]}" if number else sentence_case(ZONE_PICTURES.get(kind, ""))
     )
     caption = of_zone if number or name not in CAPTIONS else CAPTIONS[name]
+    caption = caption.replace("{stress}", stress.words if number else sentence_case(stress.words))
     return name, picture(svg, caption, f"{first.contact.name}. {caption}.")

@@ -1,6 +1,7 @@
 """The command compare: its table, its exit status, its mistakes."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -152,3 +153,20 @@ def test_compare_judges_the_references_of_the_case():
     (level,) = json.loads(answer.stdout)["levels"]
     assert {score["reference"] for score in level["scores"]} == {"edge of the kern", "press", "table"}
     assert all(score["judged"] and score["holds"] for score in level["scores"])
+
+
+def test_all_load_cases_are_compared(tmp_path: Path):
+    """Each formulation under each load case; one page; --refine needs one case."""
+    press = Path(__file__).parents[2] / "models" / "gallery" / "body_between_two_tools.yaml"
+    words = (press, "--variant", "stated mesh", "--formulations", "qp3", "--out", tmp_path / "report")
+    answer = run("compare", *words)
+    assert answer.exit_code == 0, answer.output
+    cases = ("off the middle", "raised", "edge of the kern", "off the middle and raised")
+    page = (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
+    for case in cases:
+        assert re.search(rf"^{case} +solves it", answer.output, re.MULTILINE)
+        assert case in page
+    told = json.loads(run("compare", press, "--variant", "stated mesh", "--formulations", "qp3", "--json", "-").stdout)
+    assert [*told["cases"]] == [*cases]
+    refused = run("compare", press, "--refine", "1,2")
+    assert refused.exit_code == 2

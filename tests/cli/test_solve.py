@@ -339,3 +339,24 @@ def test_a_case_that_contact_cannot_hold_is_located(command: str, tmp_path: Path
     answer = run(command, path)
     assert answer.exit_code == 2
     assert_states(answer.stderr, f"press.yaml:{line}:19: load_cases.off the middle: … 'press'")
+
+
+def test_out_writes_a_page_with_the_stress_asked_for(block: Path, tmp_path: Path):
+    """The page and its tables; a folder with other files is refused before any work, and so is an unknown stress."""
+    place = tmp_path / "result"
+    answer = run("solve", block, "--out", place, "--stress", "yy")
+    assert answer.exit_code == 0, answer.stderr
+    assert {path.name for path in place.iterdir()} == {
+        "result.html", "result.json", "zones.csv", "points.csv", "stress.csv", "spec.yaml", "figures",
+    }  # fmt: skip
+    assert "σyy" in (place / "result.html").read_text(encoding="utf-8")
+    (place / "notes.txt").write_text("mine", encoding="utf-8")
+    assert_refused(run("solve", block, "--out", place), "--out: … notes.txt … not part of a result")
+    assert_refused(run("solve", block, "--stress", "mises"), "--stress … 'mises'")
+
+
+def test_out_writes_one_page_for_all_load_cases(tmp_path: Path):
+    answer = run("solve", PRESS, "--set", "accuracy=null", "--variant", "stated mesh", "--out", tmp_path / "all")
+    assert answer.exit_code == 0, answer.stderr
+    page = (tmp_path / "all" / "result.html").read_text(encoding="utf-8")
+    assert all(case in page for case in ("raised", "edge of the kern", "off the middle and raised"))

@@ -8,14 +8,16 @@ from chromium import executable, opened, started
 from mesh_studies import of_many_settings, on_three_meshes, with_infinite_peak
 from playwright.sync_api import Browser
 from reproductions import on_base_meshes
+from results import cases, punched, rolled
 
 from bemcontact.report import folder
 
 pytestmark = pytest.mark.skipif(executable() is None, reason="there is no Chromium on this machine")
 
 STUDIES = {"meshes": on_three_meshes, "settings": of_many_settings, "infinite": with_infinite_peak}
+RESULTS = {"result": rolled, "infinite stress": punched, "cases": cases}
 PAPER = "paper"
-"""The page of the paper's problems, beside those of mesh studies."""
+"""The page of the paper's problems, beside those of mesh studies and results."""
 
 PICTURES = """
 Promise.all([...document.images].map(image => image.decode().then(() => image.naturalWidth * image.width)))
@@ -83,12 +85,15 @@ def chromium() -> Iterator[Browser]:
         yield browser
 
 
-@pytest.fixture(scope="module", params=[*STUDIES, PAPER])
+@pytest.fixture(scope="module", params=[*STUDIES, *RESULTS, PAPER])
 def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("reports") / request.param
     if request.param == PAPER:
         folder.save_reproduction(on_base_meshes(), place)
         return place / "page.html"
+    if request.param in RESULTS:
+        folder.save_result(RESULTS[request.param](), place, "name: x  # " + "long " * 60)
+        return place / "result.html"
     folder.save(STUDIES[request.param](), place, "name: x  # " + "long " * 60)
     return place / "report.html"
 

@@ -10,8 +10,12 @@ import numpy as np
 import pytest
 from mesh_studies import block, on_one_mesh, on_three_meshes, without_a_body
 from reproductions import of_the_cylinder, on_base_meshes
+from results import EACH, condensed
+from tool_problems import FREE, FREE_CASES, made
 
+from bemcontact.analysis.case_comparisons import compare_cases
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.options import ComparisonOptions
 from bemcontact.report import folder
 
 
@@ -159,3 +163,30 @@ def test_the_page_names_the_problem(tmp_path: Path):
     page = (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
     assert "block &lt;on&gt; a table &amp; more" in page
     assert block().name not in page
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_all_files_of_a_result_are_written(name: str, tmp_path: Path):
+    """Page, numbers, tables and pictures; a later result replaces it, and a report does not."""
+    results, place = EACH[name](), tmp_path / "result"
+    folder.save_result(results, place, "name: x\n")
+    stress = {"stress.csv"} if name != "condensed" else set()
+    assert files(place) >= {"result.html", "result.json", "zones.csv", "points.csv", "spec.yaml", *stress}
+    assert json.loads((place / "result.json").read_text(encoding="utf-8")) == json.loads(results.to_json())
+    page = (place / "result.html").read_text(encoding="utf-8")
+    assert page.count("<img ") == len([*(place / "figures").iterdir()])
+    folder.save_result(condensed(), place)
+    assert not files(place) & {"stress.csv", "spec.yaml", "figures/problem.svg"}
+    with pytest.raises(FileExistsError, match="not part of a report"):
+        folder.save(on_one_mesh(), place)
+
+
+def test_comparisons_under_load_cases_are_a_report(tmp_path: Path):
+    """It may replace that of one load case, and the other way round."""
+    compared = compare_cases(ComparisonOptions.of(["qp3"]), made(FREE, **FREE_CASES))
+    folder.save(on_one_mesh(), tmp_path / "report")
+    folder.save_cases(compared, tmp_path / "report", "name: x\n")
+    assert files(tmp_path / "report") >= {"report.html", "report.json", "zones.csv", "stress.csv", "spec.yaml"}
+    assert "contact.npz" not in files(tmp_path / "report")
+    folder.save(on_one_mesh(), tmp_path / "report")
+    assert "zones.csv" not in files(tmp_path / "report")
