@@ -351,8 +351,8 @@ def test_out_writes_a_page_with_the_stress_asked_for(block: Path, tmp_path: Path
     }  # fmt: skip
     assert "σyy" in (place / "result.html").read_text(encoding="utf-8")
     (place / "notes.txt").write_text("mine", encoding="utf-8")
-    assert_refused(run("solve", block, "--out", place), "--out: … notes.txt … not part of a result")
-    assert_refused(run("solve", block, "--stress", "mises"), "--stress … 'mises'")
+    assert_refused(run("solve", block, "--out", place), "--out: .*notes.txt, which is not part of a result")
+    assert_refused(run("solve", block, "--stress", "mises"), "--stress.*mises")
 
 
 def test_out_writes_one_page_for_all_load_cases(tmp_path: Path):
