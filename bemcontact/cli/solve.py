@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.arguments import FigureOption, JsonOption, RefineOption, Source, by_option
+from bemcontact.cli.arguments import FigureOption, JsonOption, RefineOption, Source, by_option, reader
 from bemcontact.cli.command import CommandOutput, modules, run
 from bemcontact.cli.terminal import Report
 from bemcontact.errors import OptionError
@@ -29,7 +29,10 @@ def solve(
         typer.Option(metavar="FOLDER", help="Write a page with pictures, and tables.", show_default=False),
     ] = None,
     stress: Annotated[
-        StressMeasure, typer.Option(help="Stress that pictures show; components are those of x, y and z.")
+        StressMeasure,
+        typer.Option(
+            parser=reader(StressMeasure), metavar=f"<{'|'.join(StressMeasure)}>", help="Stress that pictures show."
+        ),
     ] = StressMeasure.VON_MISES,
 ) -> None:
     r"""Compute the contact pressure, assess it, and print a table.
