@@ -104,7 +104,7 @@ def ensure_kind(problem: object, *kinds: type) -> None:
 def asking(problem: Problem, accuracy: AskedAccuracy) -> Problem:
     """The problem with another accuracy, unless that of the problem is wanted."""
     as_stated = isinstance(accuracy, str) and accuracy == "stated"
-    return problem if as_stated else problem.with_value("accuracy", accuracy)
+    return problem if as_stated or accuracy is problem.accuracy else problem.with_value("accuracy", accuracy)
 
 
 def ensure_acting(problem: Problem | CondensedContact) -> None:

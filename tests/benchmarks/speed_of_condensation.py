@@ -13,7 +13,8 @@ from timing import Seconds, in_turns
 
 import bemcontact
 from bemcontact.bem.body import body_of
-from bemcontact.bem.system import System, assemble
+from bemcontact.bem.solution import assemble
+from bemcontact.bem.system import System
 
 REFINE = (1, 4, 8, 16, 32)
 CONDENSATION = {608: 5.0, 1216: 3.5, 2432: 2.8, 4864: 2.3}

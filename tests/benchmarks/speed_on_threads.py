@@ -10,7 +10,7 @@ from speed_page import Section, Settings, Table
 from threadpoolctl import threadpool_info, threadpool_limits
 from timing import Seconds, in_turns
 
-from bemcontact.bem.system import assemble
+from bemcontact.bem.solution import assemble
 
 REFINE = (8, 16, 32)
 THREADS = (1, 2)

@@ -1,8 +1,10 @@
 """The page of all benchmarks of speed: it renders, and a section that fails is told and loses no other."""
 
+import importlib
 import json
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -165,3 +167,9 @@ def test_a_path_is_compared_with_a_solve_at_each_breakpoint():
     _, points, breakpoints, _, apart, *_ = speed_of_paths.row("springs", contact)
     assert (points, breakpoints) == (2, 4)
     assert apart < 1e-14
+
+
+@pytest.mark.parametrize("path", sorted(Path(__file__).parent.glob("[!t]*.py")), ids=lambda path: path.stem)
+def test_each_benchmark_finds_what_it_imports(path: Path):
+    """They are run by hand: without this a name that was moved would be missed."""
+    importlib.import_module(path.stem)
