@@ -277,10 +277,7 @@ def _peak_places(record: JsonObject, units: Units) -> list[str]:
     """
     if not record["peak"]:
         return []
-    error, several = peak_bar(record) or 0.0, len({*record["zone"]}) > 1
-    lengths = [last - first for first, last in (interval["arc"] for interval in record["intervals"]) if last > first]
-    unresolved = UNRESOLVED * min(lengths, default=0.0) / NEGLIGIBLE
-    scale = max(coordinate_size(record), unresolved)
+    error, several, scale = peak_bar(record) or 0.0, len({*record["zone"]}) > 1, resolved_size(record)
     level = level_zones(record, error)
     places = [f"all along {zone if several else 'the contact'}" for zone in level]
     for i in equal_peaks(record, error):
@@ -290,6 +287,12 @@ def _peak_places(record: JsonObject, units: Units) -> list[str]:
     if len(places) > MOST_PLACES:
         places = [*places[: MOST_PLACES - 1], f"{len(places) - MOST_PLACES + 1} more places"]
     return places
+
+
+def resolved_size(record: JsonObject) -> float:
+    """Size [L] beside which a coordinate of a place in contact is round-off, or small beside the shortest contact."""
+    lengths = [last - first for first, last in (interval["arc"] for interval in record["intervals"]) if last > first]
+    return max(coordinate_size(record), UNRESOLVED * min(lengths, default=0.0) / NEGLIGIBLE)
 
 
 def _span(interval: JsonObject, along: str, size: float, units: Units) -> str:

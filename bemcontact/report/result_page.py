@@ -6,13 +6,32 @@ from typing import Any
 from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
+from bemcontact.analysis.stress import StressPeak
 from bemcontact.assessment.contender import OUTCOMES
 from bemcontact.options import StressMeasure
 from bemcontact.problem import Problem, Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, bars_of, mesh_in_short, with_bar
 from bemcontact.report.contact_words import units_of
-from bemcontact.report.facts import contact_intervals, coordinate_size, facts, peak_of, peak_place, small, total_force
-from bemcontact.report.formatting import JsonObject, number, sentence_case, surface_in_words, vector, with_unit
+from bemcontact.report.facts import (
+    UNRESOLVED,
+    contact_intervals,
+    coordinate_size,
+    facts,
+    peak_of,
+    peak_place,
+    resolved_size,
+    small,
+    total_force,
+)
+from bemcontact.report.formatting import (
+    NEGLIGIBLE,
+    JsonObject,
+    number,
+    sentence_case,
+    surface_in_words,
+    vector,
+    with_unit,
+)
 from bemcontact.report.page import picture, template
 from bemcontact.report.verdicts import case_verdicts, overall, result_verdicts
 from bemcontact.report.zones import by_case, zone_rows
@@ -117,11 +136,11 @@ def _stresses(result: Result, units: Units) -> Iterator[tuple[str, str, str]]:
     for zone, peak in largest.shear.items():
         if peak is not None:
             depth = with_unit(number(peak.depth), units.length)
-            yield f"shear below {zone}", _stress(peak.value, units), f"{_at(peak.point, units, size)}, {depth} deep"
+            yield f"shear below {zone}", _stress(peak.value, units), f"{_at(peak, units, size)}, {depth} deep"
     if largest.inside is not None:
-        yield "von Mises, inside", _stress(largest.inside.value, units), _at(largest.inside.point, units, size)
+        yield "von Mises, inside", _stress(largest.inside.value, units), _at(largest.inside, units, size)
     if (peak := largest.boundary) is not None:
-        yield "von Mises, on the boundary", _stress(peak.value, units), f"{_at(peak.point, units, size)} on {peak.edge}"
+        yield "von Mises, on the boundary", _stress(peak.value, units), f"{_at(peak, units, size)} on {peak.edge}"
     if len(largest.singular):
         places = [vector((x, y), scale=size) for x, y in largest.singular[:MOST_PLACES].tolist()]
         more = len(largest.singular) - len(places)
@@ -134,9 +153,9 @@ def _stress(value: float, units: Units) -> str:
     return with_unit(number(value, 4), units.stress)
 
 
-def _at(point: tuple[float, float], units: Units, size: float) -> str:
-    """Write a place."""
-    return f"at {vector(point, units.length, scale=size)}"
+def _at(peak: StressPeak, units: Units, size: float) -> str:
+    """Write the place of a stress; what is small beside its depth is zero."""
+    return f"at {vector(peak.point, units.length, scale=max(size, UNRESOLVED * peak.depth / NEGLIGIBLE))}"
 
 
 def _case(name: str, result: Result, units: Units) -> dict[str, Any]:
@@ -182,7 +201,7 @@ def _envelope(cases: Mapping[str, Result], units: Units) -> Iterator[tuple[str, 
         highest = own[int(result.solution.pressure[own].argmax())]
         largest = float(result.solution.pressure[highest])
         x, y = result.contact.points[highest].tolist()
-        place = vector((x, y), units.length, scale=float(abs(result.contact.points).max()))
+        place = vector((x, y), units.length, scale=resolved_size(result.to_dict()))
         bar = result.accuracy.peak_bar(zone)
         if largest > 0:
             yield zone, with_unit(with_bar(largest, bar), units.stress), most, place

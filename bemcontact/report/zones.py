@@ -13,7 +13,14 @@ from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.problem import Units
 from bemcontact.report.bars import NOTHING, JsonObject, bars_of, unit_of_bar, with_bar, without_digits_beyond
-from bemcontact.report.facts import contact_intervals, coordinate_size, force_errors, pressed_by, zone_forces
+from bemcontact.report.facts import (
+    contact_intervals,
+    coordinate_size,
+    force_errors,
+    pressed_by,
+    resolved_size,
+    zone_forces,
+)
 from bemcontact.report.formatting import vector, with_unit, zero_if_negligible
 
 ZONE_COLUMNS = (
@@ -60,7 +67,7 @@ def _peak(record: JsonObject, zone: str, units: Units) -> str:
         return "infinite"
     own = [i for i, name in enumerate(record["zone"]) if name == zone]
     highest = max(own, key=lambda i: record["pressure"][i])
-    place = vector(record["nodes"][highest], units.length, scale=coordinate_size(record))
+    place = vector(record["nodes"][highest], units.length, scale=resolved_size(record))
     value = with_bar(record["pressure"][highest], None if bar is None else bar["bar"])
     return f"{with_unit(value, units.stress)} at {place}"
 

@@ -27,7 +27,6 @@ from bemcontact.report.figures.page import (
     cut_off,
     distance_label,
     labeled,
-    legend_below,
     new_page,
     pieces_of,
     plain,
@@ -215,12 +214,20 @@ def pictures_of(results: Result | CaseResults, stress: StressMeasure = StressMea
         figures[f"pressure{number}"], axes = _page(height=3.6)
         if isinstance(results, CaseResults):
             draw_case_pressures(axes, results, zone)
-            legend_below(axes)
+            _legend_outside(axes)
             continue
         draw_pressure(axes, results, zone)
         figures[f"gap{number}"], axes = _page(height=3.6)
         draw_gap(axes, results, zone)
     return figures
+
+
+def _legend_outside(axes: Axes) -> None:
+    """Move the legend below everything else on the page."""
+    own, page = axes.get_legend(), axes.get_figure(root=True)
+    if own is not None and page is not None:
+        own.remove()
+        page.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False, fontsize=8.5)
 
 
 def _page(result: Result | None = None, height: float = 4.2) -> tuple[Figure, Axes]:
