@@ -10,6 +10,13 @@ from bemcontact.report.bars import bar_in_words, error_percent, worst_bar
 from bemcontact.report.formatting import JsonObject, sentence_case
 
 
+NOT_LOOKED_AT = (
+    "Friction, wear, plasticity, dynamics, and everything that is not plane: the model has none of them. The rigid "
+    "surfaces do not yield. Whether the input is that of your part: compare the picture of the problem with it."
+)
+"""What no verdict covers."""
+
+
 class Verdict(NamedTuple):
     """A verdict on the equations or on the mesh: its quality (good, fair or bad), in a few words, and in sentences."""
 
