@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.mesh_study import MeshStudy
@@ -190,13 +191,18 @@ def save_path(path: ParameterPath, folder: Path, problem: Problem | None = None,
     The page describes the problem if it is given; it is drawn with the value at the end of the path.
     """
     ensure_folder_writable(folder, PATH)
-    drawn = None if problem is None else Variation(problem, path.key).at(path.end)
+    drawn = None if problem is None else Variation(_on_some_mesh(problem), path.key).at(path.end)
     pictures = {name: vector_graphic(figure) for name, figure in figures_of_path(path, drawn).items()}
     text = path_page.render(path, pictures, problem, spec)
     with _written(folder, PATH, text, path.to_json(), pictures) as temporary:
         (temporary / "path.csv").write_text(path.to_csv(), encoding="utf-8", newline="\n")
         if spec is not None:
             (temporary / "spec.yaml").write_text(spec, encoding="utf-8", newline="\n")
+
+
+def _on_some_mesh(problem: Problem) -> Problem:
+    """The problem on its stated mesh, or on the first one of a search, to be drawn."""
+    return first_mesh(problem) if problem.adapts else problem
 
 
 def save_design(design: GapDesign, folder: Path, relief: Relief | None = None) -> None:

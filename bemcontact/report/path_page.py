@@ -52,7 +52,7 @@ def render(path: ParameterPath, pictures: Mapping[str, bytes], problem: Problem 
         end=number(path.end),
         description=paragraphs(problem.description) if problem else [],
         surfaces=zone_surfaces(problem) if problem else [],
-        pictures=[(name, _picture(name, svg, path)) for name, svg in pictures.items()],
+        pictures=[(name, _picture(name, svg, path, problem)) for name, svg in pictures.items()],
         zones=path.zones,
         units=units,
         rows=[*_rows(path)],
@@ -85,15 +85,20 @@ def _rows(path: ParameterPath) -> Iterator[dict[str, Any]]:
         yield {
             "words": breakpoint_words(path, state),
             "forces": [
-                vector((zero_if_negligible(x, largest), zero_if_negligible(y, largest)))
-                for x, y in state.resultant
+                vector((zero_if_negligible(x, largest), zero_if_negligible(y, largest))) for x, y in state.resultant
             ],
             "quality": "fair" if id(state) in coarse else "",
         }
 
 
-def _picture(name: str, svg: bytes, path: ParameterPath) -> Picture:
+def _picture(name: str, svg: bytes, path: ParameterPath, problem: Problem | None) -> Picture:
     """A picture with its caption and text alternative."""
     kind, _, order = name.partition("-")
-    caption = CAPTIONS[kind] if kind in CAPTIONS else f"{path.zones[int(order) - 1]}: where the body touches"
+    caption = (
+        CAPTIONS[kind]
+        if kind in CAPTIONS
+        else f"{path.zones[int(order) - 1]}: where the body touches; dots are breakpoints, and waves between them come from the mesh"
+    )
+    if name == "problem" and problem is not None and problem.adapts:
+        caption += "; the elements are those from which the search for a mesh begins"
     return picture(svg, caption, f"{path.name}. {caption}.")

@@ -61,7 +61,8 @@ def test_table_has_a_row_for_each_state():
     head, *rows = csv.reader(io.StringIO(result.to_csv()))
     assert head == [
         "load", "breakpoint", "enter", "leave", "peak", "peak error", "peak x", "peak y",
-        "contact resultant x", "contact resultant y", "contact moment", "contact starts", "contact ends", "nodes in contact",
+        "contact resultant x", "contact resultant y", "contact moment", "contact starts", "contact ends",
+        "nodes in contact",
     ]  # fmt: skip
     assert [float(row[0]) for row in rows] == [state.value for state in result.states]
     last = rows[-1]

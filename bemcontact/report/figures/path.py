@@ -1,12 +1,13 @@
 """The picture of a load path: peak, resultant and ends of contact over the parameter."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bemcontact.arrays import Array
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.problem import Problem
 from bemcontact.report.contact_words import units_of
@@ -16,6 +17,7 @@ from bemcontact.report.figures.page import (
     CYCLE,
     QUALITY_COLOURS,
     VERMILION,
+    Piece,
     ceiling,
     labeled,
     new_page,
@@ -31,6 +33,8 @@ WIDTH, HEIGHT = 5.6, 2.5
 """Inches of each picture."""
 PANELS = 8
 """Number of states whose pressure is drawn."""
+ROOM = 0.25
+"""Room beside the contact in pictures of states, over its extent."""
 SHADE = 0.15
 """Opacity of stretches in contact."""
 
@@ -96,11 +100,22 @@ def draw_states(figure: Figure, path: ParameterPath) -> None:
             axes.plot(piece.arc, pressure[piece.index], color=color, linewidth=1.4, linestyle=piece.dashes)
         axes.set_title(f"at {number(path.value(t))}", fontsize=9, loc="left")
         axes.spines[["top", "right"]].set_visible(False)
+    panels[0].set_xlim(*_around_contact(pieces, states))
     panels[0].set_ylim(0.0, max(tops) or 1.0)
     unit = units_of(path.contact)
     figure.supxlabel(labeled("distance along the contact zone", unit.length), fontsize=9)
     cut = f", infinite in {', '.join(path.infinite)}: cut off" if path.infinite else ""
     figure.supylabel(labeled("pressure", unit.stress) + plain(cut), fontsize=9)
+
+
+def _around_contact(pieces: Sequence[Piece], states: Sequence[Array]) -> tuple[float, float]:
+    """Arc positions between which all contact of some states is, with room at either side, but no more than zones."""
+    pressed = np.any([pressure > 0 for pressure in states], axis=0)
+    zones = np.concatenate([piece.arc for piece in pieces])
+    touched = np.concatenate([piece.arc[pressed[piece.index]] for piece in pieces])
+    low, high = (touched.min(), touched.max()) if len(touched) else (zones.min(), zones.max())
+    air = ROOM * (high - low) or float(np.ptp(zones))
+    return max(float(low - air), float(zones.min())), min(float(high + air), float(zones.max()))
 
 
 def draw_peaks(axes: Axes, path: ParameterPath) -> None:
