@@ -24,8 +24,8 @@ CAPTIONS = {
 }
 """Name of a picture -> its caption."""
 NOT_ESTIMATED = (
-    "A design knows the pressure at the contact points of one mesh, and nothing between them. Solve the problem with the "
-    "designed surface, and look at its error bars."
+    "A design knows the pressure at the contact points of one mesh, and nothing between them. Solve the problem with "
+    "the designed surface, and look at its error bars."
 )
 """What is said on the errors of the mesh."""
 

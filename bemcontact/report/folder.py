@@ -1,4 +1,4 @@
-"""Folders of results, mesh studies, reproductions, paths, designs and studies; a folder is written completely or not at all."""
+"""Folders of results, paths, designs, studies and reproductions; a folder is written completely or not at all."""
 
 import json
 import re

@@ -33,6 +33,9 @@ CAPTIONS = {
 }
 """Name of a picture -> its caption."""
 
+ENDS = "where the body touches; dots are breakpoints, and waves between them come from the mesh"
+"""Caption of the picture of a zone."""
+
 
 def render(path: ParameterPath, pictures: Mapping[str, bytes], problem: Problem | None, spec: str | None) -> str:
     """Write the page of a path as HTML that needs no other file.
@@ -94,11 +97,7 @@ def _rows(path: ParameterPath) -> Iterator[dict[str, Any]]:
 def _picture(name: str, svg: bytes, path: ParameterPath, problem: Problem | None) -> Picture:
     """A picture with its caption and text alternative."""
     kind, _, order = name.partition("-")
-    caption = (
-        CAPTIONS[kind]
-        if kind in CAPTIONS
-        else f"{path.zones[int(order) - 1]}: where the body touches; dots are breakpoints, and waves between them come from the mesh"
-    )
+    caption = CAPTIONS[kind] if kind in CAPTIONS else f"{path.zones[int(order) - 1]}: {ENDS}"
     if name == "problem" and problem is not None and problem.adapts:
         caption += "; the elements are those from which the search for a mesh begins"
     return picture(svg, caption, f"{path.name}. {caption}.")

@@ -36,13 +36,13 @@ def test_the_table_is_the_breakpoints(link: ParameterPath):
     assert len(rows) == len(link.breakpoints)
     for row, state in zip(rows, link.breakpoints, strict=True):
         assert row[0] == number(state.value)
-        assert row[:6] == [*breakpoint_words(link, state)]
-        assert row[3] == str(len(state.touching))
+        words = breakpoint_words(link, state)
+        assert row[1:6] == [words.peak, words.place, str(len(state.touching)), words.enter, words.leave]
     assert rows[-1][6] == vector(link.states[-1].resultant[0])
     assert rows[0][6:] == ["(0, 0)"] * 3  # nothing presses
 
 
-def test_the_page_needs_no_other_file_and_has_all_pictures(link: ParameterPath, tmp_path: Path):
+def test_the_page_needs_no_other_file_and_an_earlier_one_is_replaced(link: ParameterPath, tmp_path: Path):
     folder.save_path(link, tmp_path / "path", LINK, "name: <x>\n")
     page = (tmp_path / "path" / "path.html").read_text(encoding="utf-8")
     reader = read(page)
@@ -53,10 +53,6 @@ def test_the_page_needs_no_other_file_and_has_all_pictures(link: ParameterPath, 
     assert "circle about" in reader.text
     assert "Proved unique solution proved" in reader.text
     assert "Not looked at" in reader.text
-
-
-def test_the_folder_is_replaced_and_foreign_files_are_not(link: ParameterPath, tmp_path: Path):
-    folder.save_path(link, tmp_path / "path", LINK, "name: x\n")
     folder.save_path(link, tmp_path / "path")
     assert not (tmp_path / "path" / "spec.yaml").exists()
     assert not (tmp_path / "path" / "figures" / "problem.svg").exists()
@@ -81,5 +77,5 @@ def test_peaks_whose_error_is_too_large_are_marked(link: ParameterPath):
 def test_an_infinite_peak_is_stated():
     path = bemcontact.follow(punch(), "conditions.top.pressure", 1.0)
     page = render(path, {}, None, None)
-    assert {row[4] for row in rows_of(page)} == {"infinite"}
+    assert {row[1] for row in rows_of(page)} == {"infinite"}
     assert "Peak pressureinfinite in foot" in read(page).text
