@@ -31,7 +31,7 @@ def path(
     refine: RefineOption = 1,
     out: Annotated[
         Path | None,
-        typer.Option(metavar="FOLDER", help="Write path.svg, path.csv and path.json.", show_default=False),
+        typer.Option(metavar="FOLDER", help="Write path.html, path.csv and path.json.", show_default=False),
     ] = None,
     json_file: JsonOption = None,
 ) -> None:
@@ -44,8 +44,9 @@ def path(
     a load case (load_cases.NAME). The exit status is 0 only if the path reaches its end, each state on it is proved to
     be the only one, and the accuracy asked is met at both ends.
 
-    FOLDER gets a picture of peak, resultants and ends of contact over the parameter (path.svg), a table of them with
-    three rows between two breakpoints (path.csv), and all results (path.json). An earlier path is replaced.
+    FOLDER gets a page with pictures of peak, forces, moments and ends of contact over the parameter (path.html), a
+    table of them with three rows between two breakpoints (path.csv), all results (path.json), and the problem as run
+    (spec.yaml). An earlier path is replaced.
 
     Examples
       bemcontact path models/cylinder_on_plane.yaml \
@@ -73,7 +74,7 @@ def path(
             report("drawing", "")
             from bemcontact.report import folder
 
-            folder.save_path(followed, out)
+            folder.save_path(followed, out, problem, source.as_run())
         return CommandOutput(
             summary=lambda: path_summary(followed),
             json=followed.to_json,

@@ -45,6 +45,8 @@ class PathState(Leaf):
     """Index of the point with the largest pressure; null without contact, or if it is infinite."""
     resultant: tuple[Pair, ...]
     """Force (x, y) of the rigid surface of each zone on the body, per thickness [p L]."""
+    moments: tuple[float, ...]
+    """Moment of this force of each zone about the origin, counterclockwise, per thickness [p L²]."""
     touching: tuple[int, ...]
     """Indices of the points that bear a pressure."""
     footprint: Internal[Footprint]
@@ -248,6 +250,7 @@ class ParameterPath(Leaf):
             peak=None if self.infinite else float(p.max(initial=0.0)),
             at=int(p.argmax()) if p.any() and not self.infinite else None,
             resultant=tuple((float(x), float(y)) for x, y in contact.resultants(p)),
+            moments=tuple(contact.moments(p).tolist()),
             touching=tuple(np.flatnonzero(p > 0).tolist()),
             footprint=where,
             bars=() if i is None or not self.breakpoint_bars else self.breakpoint_bars[i],
@@ -257,7 +260,7 @@ class ParameterPath(Leaf):
         """Write a line for each state; points and arc positions in a cell have blanks between them."""
         stream = io.StringIO()
         table, zones = csv.writer(stream, lineterminator="\n"), self.contact.zone_names
-        parts = ("resultant x", "resultant y", "starts", "ends")
+        parts = ("resultant x", "resultant y", "moment", "starts", "ends")
         table.writerow(
             [self.key, "breakpoint", "enter", "leave", "peak", "peak error", "peak x", "peak y"]
             + [f"{zone} {part}" for zone in zones for part in parts]
@@ -267,8 +270,8 @@ class ParameterPath(Leaf):
             peak = ["" if state.peak is None else state.peak, "" if state.peak_bar is None else state.peak_bar]
             place = ["", ""] if state.at is None else self.contact.points[state.at].tolist()
             row = [state.value, int(state.breakpoint), _cell(state.entered), _cell(state.left), *peak, *place]
-            for zone, force in zip(zones, state.resultant, strict=True):
-                row += [*force, *map(_cell, state.ends(zone))]
+            for zone, force, moment in zip(zones, state.resultant, state.moments, strict=True):
+                row += [*force, moment, *map(_cell, state.ends(zone))]
             table.writerow([*row, _cell(state.touching)])
         return stream.getvalue()
 

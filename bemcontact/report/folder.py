@@ -1,4 +1,4 @@
-"""Folders of results, mesh studies, reproductions, paths and studies; a folder is written completely or not at all."""
+"""Folders of results, paths, designs, studies and reproductions; a folder is written completely or not at all."""
 
 import json
 import re
@@ -8,19 +8,25 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.mesh_study import MeshStudy
 from bemcontact.analysis.reproduction import Reproduction
 from bemcontact.analysis.result import Result
+from bemcontact.analysis.variation import Variation
 from bemcontact.files import output
+from bemcontact.modelling.gap_design.designed_gap import GapDesign
+from bemcontact.modelling.gap_design.relief import Relief
 from bemcontact.options import StressMeasure
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.report import page, result_page, study_page
+from bemcontact.problem import Problem
+from bemcontact.report import design_page, page, path_page, result_page, study_page
 from bemcontact.report import reproduction as paper_page
 from bemcontact.report.figures import (
-    figure_of_path,
     figures_of,
+    figures_of_design,
+    figures_of_path,
     figures_of_reproduction,
     figures_of_study,
     pictures_of,
@@ -78,13 +84,22 @@ REPRODUCTION = Contents(
 """Folder of the problems of the paper."""
 PATH = Contents(
     title="path",
-    page="path.svg",
+    page="path.html",
     numbers="path.json",
-    others=("path.csv",),
-    picture=re.compile(r"(?!)"),
+    others=("path.csv", "spec.yaml"),
+    picture=re.compile(r"(problem|peak|force|moment|pressure|contact-\d+)\.svg"),
     keys=frozenset({"key", "start", "end", "states"}),
 )
-"""Folder of a load path; its page is a picture."""
+"""Folder of a load path."""
+DESIGN = Contents(
+    title="design",
+    page="design.html",
+    numbers="design.json",
+    others=("design.csv",),
+    picture=re.compile(r"(pressure|profile)\.svg"),
+    keys=frozenset({"goal", "zone", "profile", "before", "after"}),
+)
+"""Folder of a designed gap."""
 STUDY = Contents(
     title="study",
     page="study.html",
@@ -95,7 +110,7 @@ STUDY = Contents(
     journal=JOURNAL,
 )
 """Folder of a study of parameters."""
-KINDS = {kind.title: kind for kind in (REPORT, RESULT, REPRODUCTION, PATH, STUDY)}
+KINDS = {kind.title: kind for kind in (REPORT, RESULT, REPRODUCTION, PATH, DESIGN, STUDY)}
 """Title -> kind of folder."""
 
 
@@ -170,12 +185,33 @@ def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
         pass
 
 
-def save_path(path: ParameterPath, folder: Path) -> None:
-    """Write a load path as a folder: picture, table and numbers."""
+def save_path(path: ParameterPath, folder: Path, problem: Problem | None = None, spec: str | None = None) -> None:
+    """Write a load path as a folder: page, table, numbers, pictures, spec if given.
+
+    The page describes the problem if it is given; it is drawn with the value at the end of the path.
+    """
     ensure_folder_writable(folder, PATH)
-    picture = vector_graphic(figure_of_path(path)).decode()
-    with _written(folder, PATH, picture, path.to_json(), {}) as temporary:
+    drawn = None if problem is None else Variation(_on_some_mesh(problem), path.key).at(path.end)
+    pictures = {name: vector_graphic(figure) for name, figure in figures_of_path(path, drawn).items()}
+    text = path_page.render(path, pictures, problem, spec)
+    with _written(folder, PATH, text, path.to_json(), pictures) as temporary:
         (temporary / "path.csv").write_text(path.to_csv(), encoding="utf-8", newline="\n")
+        if spec is not None:
+            (temporary / "spec.yaml").write_text(spec, encoding="utf-8", newline="\n")
+
+
+def _on_some_mesh(problem: Problem) -> Problem:
+    """The problem on its stated mesh, or on the first one of a search, to be drawn."""
+    return first_mesh(problem) if problem.adapts else problem
+
+
+def save_design(design: GapDesign, folder: Path, relief: Relief | None = None) -> None:
+    """Write a designed gap as a folder: page, table, numbers, pictures; the page has the bounds if they are given."""
+    ensure_folder_writable(folder, DESIGN)
+    pictures = {name: vector_graphic(figure) for name, figure in figures_of_design(design).items()}
+    text = design_page.render(design, pictures, relief)
+    with _written(folder, DESIGN, text, design.to_json(), pictures) as temporary:
+        (temporary / "design.csv").write_text(design_page.design_csv(design), encoding="utf-8", newline="\n")
 
 
 def save_study(study: StudyTable, folder: Path, spec: str | None = None) -> None:

@@ -149,6 +149,12 @@ def surface_in_words(surface: RigidSurface) -> str:
             return f"own contour, deflected; gap along {vector(surface.unit_direction)}"
 
 
+def zone_surfaces(problem: Problem) -> list[tuple[str, str, str]]:
+    """Name, edges and rigid surface of each contact zone."""
+    zones = problem.contact_zones.items()
+    return [(name, ", ".join(problem.edges_of(name)), surface_in_words(zone.surface)) for name, zone in zones]
+
+
 def deflected_by(surface: DeflectedContour, problem: Problem) -> str:
     """Conditions and loads that deflect a contour: ``top t_y = -50 kN/cm²``."""
     conditions = [
@@ -156,6 +162,11 @@ def deflected_by(surface: DeflectedContour, problem: Problem) -> str:
         for name, condition in surface.conditions.items()
     ]
     return "; ".join([*conditions, *_volume_loads(surface.loads, problem)])
+
+
+def paragraphs(text: str) -> list[str]:
+    """A description paragraph by paragraph, each in one line."""
+    return [" ".join(part.split()) for part in text.split("\n\n") if part.strip()]
 
 
 def plural(noun: str, count: int) -> str:

@@ -25,7 +25,16 @@ from bemcontact.report.facts import (
     small,
     total_force,
 )
-from bemcontact.report.formatting import JsonObject, number, plural, seconds_in_words, sentence_case, vector, with_unit
+from bemcontact.report.formatting import (
+    JsonObject,
+    number,
+    paragraphs,
+    plural,
+    seconds_in_words,
+    sentence_case,
+    vector,
+    with_unit,
+)
 from bemcontact.report.verdicts import mesh_study_verdicts, overall
 
 MANY = 5
@@ -149,7 +158,7 @@ def _contents(report: JsonObject) -> dict[str, Any]:
         "infinite": infinite_peaks(level),
         "bars": [*accuracy_rows(level["accuracy"], units)],
         "bars_are": BARS_ARE,
-        "description": [" ".join(part.split()) for part in report["description"].split("\n\n") if part.strip()],
+        "description": paragraphs(report["description"]),
         "facts": [*facts(answer, units)] if answer else [],
         "touching": [*contact_intervals(answer, units, short=True)] if answer else [],
         "force": total_force(answer, units) if answer else "",

@@ -9,7 +9,7 @@ from bemcontact.analysis.result import Result
 from bemcontact.analysis.stress import StressPeak
 from bemcontact.assessment.contender import OUTCOMES
 from bemcontact.options import StressMeasure
-from bemcontact.problem import Problem, Units
+from bemcontact.problem import Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, bars_of, mesh_in_short, with_bar
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import (
@@ -27,21 +27,17 @@ from bemcontact.report.formatting import (
     NEGLIGIBLE,
     JsonObject,
     number,
+    paragraphs,
     sentence_case,
-    surface_in_words,
     vector,
     with_unit,
+    zone_surfaces,
 )
 from bemcontact.report.page import picture, template
-from bemcontact.report.verdicts import case_verdicts, overall, result_verdicts
+from bemcontact.report.verdicts import NOT_LOOKED_AT, case_verdicts, overall, result_verdicts
 from bemcontact.report.zones import by_case, zone_rows
 from bemcontact.version import __version__
 
-NOT_LOOKED_AT = (
-    "Friction, wear, plasticity, dynamics, and everything that is not plane: the model has none of them. The rigid "
-    "surfaces do not yield. Whether the input is that of your part: compare the picture of the problem with it."
-)
-"""What no verdict covers."""
 ZONE_PICTURES = {"contact": "close-up of the contact, {stress}", "pressure": "pressure", "gap": "gap"}
 """Kind of a picture of one zone -> its caption."""
 MOST_PLACES = 6
@@ -74,7 +70,7 @@ def render(
     return template("result.html").render(
         name=first.contact.name if isinstance(results, Result) else results.name,
         version=__version__,
-        description=_paragraphs(first.problem),
+        description=paragraphs(first.problem.description) if first.problem else [],
         formulation=first.solution.formulation,
         verdicts=verdicts,
         overall=overall(verdicts),
@@ -87,7 +83,7 @@ def render(
         envelope=[*_envelope(cases, units)] if not alone else [],
         bars=[*accuracy_rows(alone["accuracy"], units)] if alone else [],
         bars_are=BARS_ARE,
-        surfaces=_surfaces(first.problem),
+        surfaces=zone_surfaces(first.problem) if first.problem else [],
         notes=[*_notes(cases)],
         infinite=any(result.accuracy.infinite for result in cases.values()),
         assessed=any(result.accuracy.met is not None for result in cases.values()),
@@ -95,20 +91,6 @@ def render(
         pictures=[_picture(name, svg, first, stress) for name, svg in pictures.items()],
         spec=spec,
     )
-
-
-def _paragraphs(problem: Problem | None) -> list[str]:
-    """The description of a problem, paragraph by paragraph."""
-    parts = "" if problem is None else problem.description
-    return [" ".join(part.split()) for part in parts.split("\n\n") if part.strip()]
-
-
-def _surfaces(problem: Problem | None) -> list[tuple[str, str, str]]:
-    """Name, edges and rigid surface of each contact zone."""
-    if problem is None:
-        return []
-    zones = problem.contact_zones.items()
-    return [(name, ", ".join(problem.edges_of(name)), surface_in_words(zone.surface)) for name, zone in zones]
 
 
 def _headline(record: JsonObject, units: Units) -> Iterator[tuple[str, str, str]]:

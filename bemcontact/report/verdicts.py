@@ -9,6 +9,12 @@ from bemcontact.assessment.penetration import Misfit
 from bemcontact.report.bars import bar_in_words, error_percent, worst_bar
 from bemcontact.report.formatting import JsonObject, sentence_case
 
+NOT_LOOKED_AT = (
+    "Friction, wear, plasticity, dynamics, and everything that is not plane: the model has none of them. The rigid "
+    "surfaces do not yield. Whether the input is that of your part: compare the picture of the problem with it."
+)
+"""What no verdict covers."""
+
 
 class Verdict(NamedTuple):
     """A verdict on the equations or on the mesh: its quality (good, fair or bad), in a few words, and in sentences."""
@@ -22,6 +28,12 @@ class Verdict(NamedTuple):
     def good(self) -> bool:
         """Whether nothing is left open."""
         return self.quality == "good"
+
+    def kind(self, assessed: bool) -> str:
+        """Whether it is proved, or estimated from meshes, if errors were assessed."""
+        if self.of == "Mesh":
+            return "Estimated" if assessed else "Not estimated"
+        return "Proved" if self.good else "Not proved"
 
 
 def overall(verdicts: Sequence[Verdict]) -> str:

@@ -50,18 +50,25 @@ def test_resultant_is_the_load():
         assert state.resultant[0] == pytest.approx((0.0, -state.value / 40), abs=1e-14)
 
 
+def test_moment_is_that_of_the_load_about_the_origin():
+    """By symmetry the force acts at point 10, which is at (10, 0)."""
+    for state in pressed_parabola().states:
+        assert state.moments == pytest.approx([10 * state.resultant[0][1]], abs=1e-12)
+
+
 def test_table_has_a_row_for_each_state():
     result = pressed_parabola()
     head, *rows = csv.reader(io.StringIO(result.to_csv()))
     assert head == [
         "load", "breakpoint", "enter", "leave", "peak", "peak error", "peak x", "peak y",
-        "contact resultant x", "contact resultant y", "contact starts", "contact ends", "nodes in contact",
+        "contact resultant x", "contact resultant y", "contact moment", "contact starts", "contact ends",
+        "nodes in contact",
     ]  # fmt: skip
     assert [float(row[0]) for row in rows] == [state.value for state in result.states]
     last = rows[-1]
     assert last[6:8] == ["10.0", "0.0"]
     assert [int(i) for i in last[-1].split()] == list(result.states[-1].touching)
-    assert float(last[11]) + float(last[10]) == pytest.approx(20, abs=1e-9)  # symmetry about point 10
+    assert float(last[12]) + float(last[11]) == pytest.approx(20, abs=1e-9)  # symmetry about point 10
     entering = next(row for row in rows if row[2])
     assert entering[2] == "9 11"
 

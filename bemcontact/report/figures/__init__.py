@@ -6,11 +6,24 @@ Each ``draw_...`` function draws into axes that it is given; each ``figure_of_..
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
 from bemcontact.report.figures.contact import close_ups, draw_contact
 from bemcontact.report.figures.deformed import draw_deformed
-from bemcontact.report.figures.design import draw_relief, draw_relieved_pressure, figure_of_design
+from bemcontact.report.figures.design import (
+    draw_relief,
+    draw_relieved_pressure,
+    figure_of_design,
+    figures_of_design,
+)
 from bemcontact.report.figures.load_cases import draw_case_pressures, figure_of, figure_of_cases, pictures_of
 from bemcontact.report.figures.mesh_study import draw_convergence, draw_history, figures_of
 from bemcontact.report.figures.page import FORMATS, ensure_known_format, save, vector_graphic
-from bemcontact.report.figures.path import draw_interval_ends, draw_peaks, draw_resultants, figure_of_path
+from bemcontact.report.figures.path import (
+    draw_interval_ends,
+    draw_moments,
+    draw_peaks,
+    draw_resultants,
+    draw_states,
+    figure_of_path,
+    figures_of_path,
+)
 from bemcontact.report.figures.problem import draw_problem, figure_of_problem
 from bemcontact.report.figures.reproduction import draw_against, figures_of_reproduction
 from bemcontact.report.figures.result import (
@@ -34,6 +47,7 @@ __all__ = [
     "draw_gaps",
     "draw_history",
     "draw_interval_ends",
+    "draw_moments",
     "draw_output",
     "draw_peaks",
     "draw_pressure",
@@ -42,6 +56,7 @@ __all__ = [
     "draw_relief",
     "draw_relieved_pressure",
     "draw_resultants",
+    "draw_states",
     "ensure_known_format",
     "figure_of",
     "figure_of_cases",
@@ -50,6 +65,8 @@ __all__ = [
     "figure_of_problem",
     "figure_of_result",
     "figures_of",
+    "figures_of_design",
+    "figures_of_path",
     "figures_of_reproduction",
     "figures_of_study",
     "fill_with_stress",

@@ -9,6 +9,9 @@ from bemcontact.modelling.gap_design.designed_gap import GapDesign
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.page import CYCLE, GREY, labeled, new_page, plain
 
+WIDTH = 5.2
+"""Inches of a picture on a page."""
+
 
 def figure_of_design(design: GapDesign) -> Figure:
     """Draw the pressure of all load states without and with the profile, and the profile, over arc length."""
@@ -18,6 +21,15 @@ def figure_of_design(design: GapDesign) -> Figure:
     draw_relieved_pressure(above, design)
     above.set_title(plain(f"{design.before[0].contact.name}: {design.goal.value} on {design.zone}"), fontsize=10)
     return figure
+
+
+def figures_of_design(design: GapDesign) -> dict[str, Figure]:
+    """Make the pictures of the page of a design: "pressure" and "profile"."""
+    figures = {name: new_page(WIDTH, 3.4) for name in ("pressure", "profile")}
+    draw_relieved_pressure(figures["pressure"].add_subplot(), design)
+    figures["pressure"].axes[0].set_xlabel(_distance(design))
+    draw_relief(figures["profile"].add_subplot(), design)
+    return figures
 
 
 def draw_relieved_pressure(axes: Axes, design: GapDesign) -> None:
@@ -45,10 +57,14 @@ def draw_relief(axes: Axes, design: GapDesign) -> None:
     at, arc = _points(design)
     axes.fill_between(arc, design.profile[at], 0.0, color=GREY, alpha=0.25, linewidth=0)
     axes.plot(arc, design.profile[at], color=GREY, marker=".", linewidth=1.5)
-    unit = units_of(design.before[0].contact).length
-    axes.set_xlabel(labeled("distance along the contact zone", unit))
-    axes.set_ylabel(labeled("profile", unit))
+    axes.set_xlabel(_distance(design))
+    axes.set_ylabel(labeled("profile", units_of(design.before[0].contact).length))
     axes.spines[["top", "right"]].set_visible(False)
+
+
+def _distance(design: GapDesign) -> str:
+    """Label of the axis along the zone."""
+    return labeled("distance along the contact zone", units_of(design.before[0].contact).length)
 
 
 def _points(design: GapDesign) -> tuple[IntArray, Array]:

@@ -1,21 +1,40 @@
 """The picture of a load path: peak, resultant and ends of contact over the parameter."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bemcontact.arrays import Array
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
+from bemcontact.problem import Problem
 from bemcontact.report.contact_words import units_of
-from bemcontact.report.figures.page import BLACK, CYCLE, QUALITY_COLOURS, labeled, new_page, plain, short_label
+from bemcontact.report.figures.mesh_study import plan_of
+from bemcontact.report.figures.page import (
+    BLACK,
+    CYCLE,
+    QUALITY_COLOURS,
+    VERMILION,
+    Piece,
+    ceiling,
+    labeled,
+    new_page,
+    pieces_of,
+    plain,
+    short_label,
+)
 from bemcontact.report.formatting import number
 from bemcontact.report.path_verdicts import path_verdicts
 from bemcontact.report.verdicts import in_short, overall
 
 WIDTH, HEIGHT = 5.6, 2.5
 """Inches of each picture."""
+PANELS = 8
+"""Number of states whose pressure is drawn."""
+ROOM = 0.25
+"""Room beside the contact in pictures of states, over its extent."""
 SHADE = 0.15
 """Opacity of stretches in contact."""
 
@@ -40,8 +59,71 @@ def figure_of_path(path: ParameterPath) -> Figure:
     return figure
 
 
+def figures_of_path(path: ParameterPath, problem: Problem | None = None) -> dict[str, Figure]:
+    """Make the pictures of the page of a path, by name.
+
+    They are "problem" (if it is given), "peak", "force", "moment", "contact-1" and so on for each zone, and "pressure".
+    """
+    figures = {} if problem is None else {"problem": plan_of(problem)}
+    for name, draw in (("peak", draw_peaks), ("force", draw_resultants), ("moment", draw_moments)):
+        draw(_panel(figures, name, path), path)
+    for number_of_zone, zone in enumerate(path.zones, 1):
+        draw_interval_ends(_panel(figures, f"contact-{number_of_zone}", path), path, zone)
+    figures["pressure"] = new_page(WIDTH, 6.4)
+    draw_states(figures["pressure"], path)
+    return figures
+
+
+def _panel(figures: dict[str, Figure], name: str, path: ParameterPath) -> Axes:
+    """Axes of a picture of its own, over the parameter."""
+    figures[name] = new_page(WIDTH, 3.2)
+    axes = figures[name].add_subplot()
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.set_xlabel(short_label(path.key, 60))
+    return axes
+
+
+def draw_states(figure: Figure, path: ParameterPath) -> None:
+    """Draw the pressure along the contact zones at evenly spaced values of the parameter, in a panel each.
+
+    All panels have one scale; an infinite pressure is cut off.
+    """
+    at = np.linspace(path.path.begins_at, path.path.ends_at, PANELS).tolist()
+    states = [path.path.at(t).pressure for t in at]
+    tops = [ceiling(path.contact, pressure, path.infinite) or 1.08 * pressure.max(initial=0.0) for pressure in states]
+    pieces = [*pieces_of(path.contact, np.any([pressure > 0 for pressure in states], axis=0))]
+    panels = figure.subplots(PANELS // 2, 2, sharex=True, sharey=True).ravel().tolist()
+    for axes, t, pressure in zip(panels, at, states, strict=True):
+        for piece in pieces:
+            color = CYCLE[int(path.contact.zone[piece.index[0]]) % len(CYCLE)]
+            axes.fill_between(piece.arc, pressure[piece.index], 0.0, color=color, alpha=SHADE, linewidth=0)
+            axes.plot(piece.arc, pressure[piece.index], color=color, linewidth=1.4, linestyle=piece.dashes)
+        axes.set_title(f"at {number(path.value(t))}", fontsize=9, loc="left")
+        axes.spines[["top", "right"]].set_visible(False)
+    panels[0].set_xlim(*_around_contact(pieces, states))
+    panels[0].set_ylim(0.0, max(tops) or 1.0)
+    unit = units_of(path.contact)
+    figure.supxlabel(labeled("distance along the contact zone", unit.length), fontsize=9)
+    cut = f", infinite in {', '.join(path.infinite)}: cut off" if path.infinite else ""
+    figure.supylabel(labeled("pressure", unit.stress) + plain(cut), fontsize=9)
+
+
+def _around_contact(pieces: Sequence[Piece], states: Sequence[Array]) -> tuple[float, float]:
+    """Arc positions between which all contact of some states is, with room at either side, but no more than zones."""
+    pressed = np.any([pressure > 0 for pressure in states], axis=0)
+    zones = np.concatenate([piece.arc for piece in pieces])
+    touched = np.concatenate([piece.arc[pressed[piece.index]] for piece in pieces])
+    low, high = (touched.min(), touched.max()) if len(touched) else (zones.min(), zones.max())
+    air = ROOM * (high - low) or float(np.ptp(zones))
+    return max(float(low - air), float(zones.min())), min(float(high + air), float(zones.max()))
+
+
 def draw_peaks(axes: Axes, path: ParameterPath) -> None:
-    """Draw the largest pressure over the parameter, with a dot at each breakpoint; nothing if it is infinite."""
+    """Draw the largest pressure over the parameter, with a mark at each breakpoint; nothing if it is infinite.
+
+    Known errors at breakpoints are bars. Marks are hollow where the error is larger than asked, or not known.
+    """
+    begin_at_left(axes, path)
     axes.set_ylabel(labeled("peak pressure", units_of(path.contact).stress))
     if path.infinite:
         axes.text(
@@ -50,28 +132,56 @@ def draw_peaks(axes: Axes, path: ParameterPath) -> None:
         axes.set_yticks([])
         return
     _draw_line(axes, path, [state.peak or 0.0 for state in path.states], BLACK, "")
+    known = [(state.value, state.peak, state.peak * state.peak_bar) for state in path.pressed
+             if state.peak is not None and state.peak_bar is not None]  # fmt: skip
+    for value, peak, error in known:
+        axes.vlines(value, peak - error, peak + error, color=BLACK, linewidth=1.0)
+    axes.scatter(
+        [state.value for state in path.coarse], [state.peak or 0.0 for state in path.coarse],
+        s=14, facecolors="white", edgecolors=VERMILION, linewidth=1.0, zorder=3,
+    )  # fmt: skip
     axes.set_ylim(bottom=0)
 
 
 def draw_resultants(axes: Axes, path: ParameterPath) -> None:
     """Draw the size of the force of each rigid surface on the body over the parameter."""
-    zones = path.contact.zone_names
-    for order, zone in enumerate(zones):
-        sizes = [float(np.hypot(*state.resultant[order])) for state in path.states]
-        _draw_line(axes, path, sizes, CYCLE[order % len(CYCLE)], plain(zone))
+    sizes = [[float(np.hypot(*force)) for force in state.resultant] for state in path.states]
+    _draw_by_zone(axes, path, sizes)
     axes.set_ylabel(labeled("resultant", units_of(path.contact).line_force))
     axes.set_ylim(bottom=0)
-    if len(zones) > 1:
+
+
+def draw_moments(axes: Axes, path: ParameterPath) -> None:
+    """Draw the moment about the origin of the force of each rigid surface on the body over the parameter."""
+    _draw_by_zone(axes, path, [[*state.moments] for state in path.states])
+    axes.set_ylabel(labeled("moment about (0, 0)", units_of(path.contact).line_moment))
+
+
+def _draw_by_zone(axes: Axes, path: ParameterPath, numbers: list[list[float]]) -> None:
+    """Draw a number of each zone, given state by state, over the parameter."""
+    begin_at_left(axes, path)
+    for order, zone in enumerate(path.zones):
+        _draw_line(axes, path, [row[order] for row in numbers], CYCLE[order % len(CYCLE)], plain(zone))
+    if len(path.zones) > 1:
         axes.legend(frameon=False, fontsize=8.5)
 
 
+def begin_at_left(axes: Axes, path: ParameterPath) -> None:
+    """Let the parameter go from its start at the left to its end at the right, whichever is larger."""
+    air = 0.03 * (path.end - path.start)
+    axes.set_xlim(path.start - air, path.end + air)
+
+
 def draw_interval_ends(axes: Axes, path: ParameterPath, zone: str) -> None:
-    """Draw where a zone is in contact, by arc position, over the parameter."""
-    color = CYCLE[path.contact.zone_names.index(zone) % len(CYCLE)]
+    """Draw where a zone is in contact, by arc position, over the parameter; dots are breakpoints."""
+    begin_at_left(axes, path)
+    color, stops = CYCLE[path.zones.index(zone) % len(CYCLE)], {state.value for state in path.breakpoints}
     for values, starts, ends in _bands(path.states, zone):
         axes.fill_between(values, starts, ends, color=color, alpha=SHADE, linewidth=0)
         for edge in (starts, ends):
             axes.plot(values, edge, color=color, linewidth=1.4)
+            marked = [(value, y) for value, y in zip(values, edge, strict=True) if value in stops]
+            axes.plot(*np.reshape(marked, (-1, 2)).T, color=color, linestyle="none", marker="o", markersize=2.2)
     axes.set_ylabel(labeled(f"contact of {short_label(zone, 16)}", units_of(path.contact).length))
 
 

@@ -32,12 +32,13 @@ def test_page_has_a_picture_of_each_zone(link: ParameterPath):
 
 def test_lines_are_the_states(link: ParameterPath):
     page = figures.figure_of_path(link)
-    line, dots = page.axes[0].lines
+    line, dots, *_ = page.axes[0].lines
     np.testing.assert_array_equal(line.get_xydata(), [(state.value, state.peak) for state in link.states])
     np.testing.assert_array_equal(dots.get_xydata(), [(state.value, state.peak) for state in link.breakpoints])
     drum = page.axes[1].lines[0]
     assert np.asarray(drum.get_ydata())[-1] == pytest.approx(250, rel=1e-3)  # statics, 0.1 % for the bent link
-    start, end = page.axes[2].lines[-2:]
+    start, start_dots, end, end_dots = page.axes[2].lines[-4:]
+    assert len(start_dots.get_xydata()) == len(end_dots.get_xydata()) > 2
     interval = link.states[-1].footprint.intervals[0]
     assert np.asarray(start.get_ydata())[-1] == interval.start_arc
     assert np.asarray(end.get_ydata())[-1] == interval.end_arc
@@ -46,7 +47,9 @@ def test_lines_are_the_states(link: ParameterPath):
 def test_a_path_written_twice_is_the_same(link: ParameterPath, tmp_path: Path):
     for name in ("a", "b"):
         folder.save_path(link, tmp_path / name)
-    for name in ("path.svg", "path.csv", "path.json"):
+    written = {item.relative_to(tmp_path / "a") for item in (tmp_path / "a").rglob("*") if item.is_file()}
+    assert len(written) == 3 + 4 + len(link.zones)  # page, table, numbers; pictures
+    for name in written:
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
 
@@ -82,3 +85,44 @@ def test_an_infinite_peak_is_not_drawn():
     assert np.asarray(forces.lines[0].get_ydata())[[0, -1]] == pytest.approx([30, 10])  # statics
     assert path.start_accuracy.met
     assert path.end_accuracy.met
+
+
+def test_the_start_of_a_path_is_at_the_left_though_its_value_falls():
+    problem = bemcontact.load(MODELS / "gallery" / "three_zones.yaml", variant="stated mesh")
+    unloaded = bemcontact.follow(problem, "conditions.loaded.pressure", 10, 20)
+    for name, figure in figures.figures_of_path(unloaded).items():
+        if name != "pressure":
+            left, right = figure.axes[0].get_xlim()
+            assert left > 20 > 10 > right
+
+
+def test_moments_are_those_of_the_states(link: ParameterPath):
+    """Curves equal data; that the moments are those of the forces is tested with the path."""
+    lines = figures.figures_of_path(link)["moment"].axes[0].lines[::2]
+    for order, line in enumerate(lines):
+        np.testing.assert_array_equal(line.get_ydata(), [state.moments[order] for state in link.states])
+
+
+def test_panels_are_states_of_the_path(link: ParameterPath):
+    """The first and the last panel are the ends; all have one scale, the largest pressure in it."""
+    panels = figures.figures_of_path(link)["pressure"].axes
+    first, last = (link.path.pressure[i] for i in (0, -1))
+    for axes, pressure in ((panels[0], first), (panels[-1], last)):
+        drawn = np.concatenate([np.asarray(line.get_ydata()) for line in axes.lines])
+        np.testing.assert_allclose(np.sort(drawn), np.sort(pressure), atol=1e-12 * last.max())
+    assert len({axes.get_ylim() for axes in panels}) == 1
+    assert panels[0].get_ylim()[1] > last.max()
+    assert [panels[0].get_title(loc="left"), panels[-1].get_title(loc="left")] == ["at 0", "at 20"]
+
+
+def test_breakpoints_with_too_large_an_error_are_hollow(link: ParameterPath):
+    """The error asked is 1 %: of bars of 100 % and of 0.1 % at every other breakpoint, the first ones are hollow."""
+    bars = [ErrorBar(quantity="peak", zone="drum", value=1.0, bar=bar) for bar in (1.0, 0.001)]
+    accuracy = Accuracy(asked=0.01, met=True, bars=(bars[1],))
+    known = tuple((bars[i % 2],) for i in range(len(link.breakpoints)))
+    coarse = replace(link, start_accuracy=accuracy, end_accuracy=accuracy, breakpoint_bars=known)
+    axes = figures.figures_of_path(coarse)["peak"].axes[0]
+    *ranges, hollow = axes.collections
+    wanted = [state for i, state in enumerate(coarse.breakpoints) if not i % 2 and state in coarse.pressed]
+    np.testing.assert_array_equal(hollow.get_offsets(), [(state.value, state.peak) for state in wanted])
+    assert len(ranges) == len(coarse.pressed)

@@ -1,0 +1,81 @@
+"""The page of a path: its table is the breakpoints, what is unsure is marked, and it needs no other file."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from mesh_studies import punch
+from page_reader import ensure_self_contained, read
+
+import bemcontact
+from bemcontact.assessment.accuracy import Accuracy, ErrorBar
+from bemcontact.parametric.parameter_path import ParameterPath
+from bemcontact.report import folder
+from bemcontact.report.breakpoints import breakpoint_words
+from bemcontact.report.formatting import number, vector
+from bemcontact.report.path_page import render
+
+LINK = bemcontact.load(Path(__file__).parents[2] / "models" / "gallery" / "three_zones.yaml", variant="stated mesh")
+
+
+@pytest.fixture(scope="module")
+def link() -> ParameterPath:
+    return bemcontact.follow(LINK, "conditions.loaded.pressure", 20, 0)
+
+
+def rows_of(page: str) -> list[list[str]]:
+    """Texts of the cells of each row of the table of breakpoints."""
+    table = page[page.index('<section id="breakpoints">') :]
+    rows = re.findall(r"<tr>(.*?)</tr>", table, flags=re.DOTALL)[1:]
+    return [[re.sub(r"<[^>]*>", "", cell) for cell in re.findall(r"<t[hd].*?</t[hd]>", row)] for row in rows]
+
+
+def test_the_table_is_the_breakpoints(link: ParameterPath):
+    rows = rows_of(render(link, {}, None, None))
+    assert len(rows) == len(link.breakpoints)
+    for row, state in zip(rows, link.breakpoints, strict=True):
+        assert row[0] == number(state.value)
+        words = breakpoint_words(link, state)
+        assert row[1:6] == [words.peak, words.place, str(len(state.touching)), words.enter, words.leave]
+    assert rows[-1][6] == vector(link.states[-1].resultant[0])
+    assert rows[0][6:] == ["(0, 0)"] * 3  # nothing presses
+
+
+def test_the_page_needs_no_other_file_and_an_earlier_one_is_replaced(link: ParameterPath, tmp_path: Path):
+    folder.save_path(link, tmp_path / "path", LINK, "name: <x>\n")
+    page = (tmp_path / "path" / "path.html").read_text(encoding="utf-8")
+    reader = read(page)
+    ensure_self_contained(page, reader)
+    assert page.count("<img ") == len([*(tmp_path / "path" / "figures").iterdir()]) == 5 + len(link.zones)
+    assert "conditions.loaded.pressure goes from 0 to 20." in reader.text
+    assert "&lt;x&gt;" in page
+    assert "circle about" in reader.text
+    assert "Proved unique solution proved" in reader.text
+    assert "Not looked at" in reader.text
+    folder.save_path(link, tmp_path / "path")
+    assert not (tmp_path / "path" / "spec.yaml").exists()
+    assert not (tmp_path / "path" / "figures" / "problem.svg").exists()
+    (tmp_path / "path" / "figures" / "mine.svg").touch()
+    with pytest.raises(FileExistsError, match=r"mine\.svg, which is not part of a path"):
+        folder.save_path(link, tmp_path / "path")
+
+
+def test_peaks_whose_error_is_too_large_are_marked(link: ParameterPath):
+    """The error asked is 1 %, and it is 100 % at each breakpoint; where nothing touches there is no peak."""
+    bar = ErrorBar(quantity="peak", zone="drum", value=1.0, bar=1.0)
+    accuracy = Accuracy(asked=0.01, met=True, bars=(replace(bar, bar=0.0),))
+    coarse = replace(
+        link, start_accuracy=accuracy, end_accuracy=accuracy, breakpoint_bars=((bar,),) * len(link.breakpoints)
+    )
+    page = render(coarse, {}, None, None)
+    table = page[page.index('<section id="breakpoints">') : page.index('<section id="reliance">')]
+    assert table.count('class="badge fair"') == len(coarse.coarse) > 0
+    assert "Estimated too coarse between the ends" in read(page).text
+
+
+def test_an_infinite_peak_is_stated():
+    path = bemcontact.follow(punch(), "conditions.top.pressure", 1.0)
+    page = render(path, {}, None, None)
+    assert {row[1] for row in rows_of(page)} == {"infinite"}
+    assert "Peak pressureinfinite in foot" in read(page).text
