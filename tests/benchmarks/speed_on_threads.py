@@ -18,7 +18,7 @@ THREADS = (1, 2)
 TEXT = """\
 The same problems as for condensation, with one thread of BLAS and with two. The *wall* time is that of the clock.
 It says something only if nothing else runs on the machine. The program itself lets BLAS take several threads for
-the factorization and the products of matrices of at least 1000 unknowns, and one for all else.
+factorizations and substitutions that would take half a second or more on one, from about 3000 unknowns on.
 """
 
 
