@@ -107,22 +107,31 @@ def coarse() -> MeshTri:
     points = np.vstack(parts)
     triangles = Delaunay(points).simplices
     x, y = points[triangles].mean(axis=1).T
-    return MeshTri(points.T.copy(), triangles[(abs(y) < HALF_HEIGHT) | (x < CUT) | (x > LENGTH - CUT)].T.copy())
+    inside = abs(y) < HALF_HEIGHT * np.minimum(1, np.minimum(x, LENGTH - x) / CUT)
+    for center in RAYS:
+        _, part = in_end(center, x, y)
+        inside = inside | (part < 1)
+    return MeshTri(points.T.copy(), triangles[inside].T.copy())
+
+
+def in_end(center: float, x: Array, y: Array) -> tuple[Array, Array]:
+    """Reach of the straight pieces around a round end at points, and the points' distance over it; inf beside it."""
+    rays = RAYS[center]
+    angle = np.degrees(np.arctan2(y, x - center))
+    angle = np.where(angle < rays[0] - 1e-9, angle + 360, angle)
+    piece = np.clip(np.searchsorted(rays, angle) - 1, 0, len(rays) - 2)
+    middle, half = (rays[piece] + rays[piece + 1]) / 2, (rays[piece + 1] - rays[piece]) / 2
+    reach = RADIUS * np.cos(np.radians(half)) / np.cos(np.radians(angle - middle))
+    return reach, np.where(angle <= rays[-1] + 1e-9, np.hypot(x - center, y) / reach, np.inf)
 
 
 def place(x: Array, y: Array) -> tuple[Array, Array]:
     """Push points of the link with straight pieces outwards, those on pieces onto the arcs."""
     result = np.array([x, y], float)
-    for center, rays in RAYS.items():
-        dx, r = x - center, np.hypot(x - center, y)
-        angle = np.degrees(np.arctan2(y, dx))
-        angle = np.where(angle < rays[0] - 1e-9, angle + 360, angle)
-        inside = (r > 0) & (angle <= rays[-1] + 1e-9)
-        piece = np.clip(np.searchsorted(rays, angle) - 1, 0, len(rays) - 2)
-        middle, half = (rays[piece] + rays[piece + 1]) / 2, (rays[piece + 1] - rays[piece]) / 2
-        reach = RADIUS * np.cos(np.radians(half)) / np.cos(np.radians(angle - middle))
-        push = np.where(inside, (RADIUS / reach - 1) * (r / reach) ** 2, 0.0)
-        result += push * np.array([dx, y])
+    for center in RAYS:
+        reach, part = in_end(center, x, y)
+        push = np.where(np.isfinite(part), (RADIUS / reach - 1) * part**2, 0.0)
+        result += push * np.array([x - center, y])
     return result[0], result[1]
 
 
@@ -172,7 +181,7 @@ class Pressed:
         basis = self.body.basis
         lam, mu = lame_parameters(YOUNG, POISSON)
         du = basis.interpolate(self.displacement).grad
-        swelling = (3 * lam + 2 * mu) * EXPANSION * heat(*basis.global_coordinates().value)
+        swelling = (3 * lam + 2 * mu) * EXPANSION * heat(*np.asarray(basis.global_coordinates()))
         mean = lam * (du[0, 0] + du[1, 1]) - swelling
         scalar = basis.with_element(ElementTriP2())
         parts = mean + 2 * mu * du[0, 0], mean + 2 * mu * du[1, 1], mu * (du[0, 1] + du[1, 0])
