@@ -1,6 +1,6 @@
 """Stress inside the link on three supports beside quadratic triangles, with weight and temperature.
 
-    OPENBLAS_NUM_THREADS=1 python tests/benchmarks/finite_elements_stress.py [--sizes 0.4 0.2] [--accuracy 0.01 0.001]
+    OPENBLAS_NUM_THREADS=1 python tests/benchmarks/finite_elements_stress.py [--sizes 0.3 0.15] [--accuracy 0.01 0.001]
 
 The link of `models/gallery/three_zones.yaml` gets a weight and a temperature. Finite elements find all contacts
 themselves, on a mesh and on one with sides of half the length. The table compares stress at 50 points.
@@ -180,27 +180,28 @@ class Pressed:
         """σxx, σyy, σxy, projected on continuous quadratic functions: smoother than the gradient itself."""
         basis = self.body.basis
         lam, mu = lame_parameters(YOUNG, POISSON)
-        du = basis.interpolate(self.displacement).grad
+        du = np.asarray(basis.interpolate(self.displacement)[1])
         swelling = (3 * lam + 2 * mu) * EXPANSION * heat(*np.asarray(basis.global_coordinates()))
         mean = lam * (du[0, 0] + du[1, 1]) - swelling
         scalar = basis.with_element(ElementTriP2())
         parts = mean + 2 * mu * du[0, 0], mean + 2 * mu * du[1, 1], mu * (du[0, 1] + du[1, 0])
-        return scalar, [scalar.project(part) for part in parts]
+        return scalar, [np.asarray(scalar.project(part)) for part in parts]
 
     def stress(self, points: Array) -> Array:
         """σxx, σyy, σxy, σzz (k, 4) [p]."""
         scalar, parts = self._stress
         element, local = self._elements(points)
-        shapes = [np.asarray(scalar.elem.gbasis(scalar.mapping, local[:, :, None], i, element)[0])[:, 0] for i in range(6)]
+        shapes = [
+            np.asarray(scalar.elem.gbasis(scalar.mapping, local[:, :, None], i, element)[0])[:, 0] for i in range(6)
+        ]
         numbers = np.asarray(scalar.element_dofs)[:, element]
         xx, yy, xy = (np.sum(shapes * part[numbers], axis=0) for part in parts)
         return np.column_stack([xx, yy, xy, POISSON * (xx + yy) - YOUNG * EXPANSION * heat(*points.T)])
 
-
     def _elements(self, points: Array) -> tuple[IntArray, Array]:
         """The triangle (k,) in which each point is, and its local coordinates (2, k)."""
         corners = self.body.mesh.p[:, self.body.mesh.t]
-        _, near = KDTree(corners.mean(axis=1).T).query(points, k=NEAREST)
+        near = np.asarray(KDTree(corners.mean(axis=1).T).query(points, k=NEAREST)[1])
         origin, first, second = (corners[:, i, near] for i in range(3))
         sides = np.stack([first - origin, second - origin], axis=1).transpose(2, 3, 0, 1)
         x, y = np.linalg.solve(sides, (points.T[..., None] - origin).transpose(1, 2, 0)[..., None])[..., 0].T
@@ -330,7 +331,7 @@ def percent(ratio: float) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--sizes", nargs=2, type=float, default=[0.4, 0.2], help="sides at contacts, over half-width")
+    parser.add_argument("--sizes", nargs=2, type=float, default=[0.3, 0.15], help="sides at contacts, over half-width")
     parser.add_argument("--accuracy", nargs="+", type=float, default=[0.01, 0.001], help="of bemcontact")
     given = parser.parse_args()
     Console(width=150).print(compared(tuple(given.sizes), tuple(given.accuracy)))

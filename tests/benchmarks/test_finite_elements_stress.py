@@ -1,10 +1,24 @@
-"""Does the benchmark of stress state its link rightly, and recover stress as finite elements should?"""
+"""The benchmark of stress states its link rightly, and recovers linear fields."""
 
 import numpy as np
 import pytest
 from finite_elements_contact import ElasticBody
-from finite_elements_stress import CORNER, CUT, EXPANSION, HALF_HEIGHT, LENGTH, POISSON, RADIUS, WEIGHT, YOUNG
-from finite_elements_stress import Pressed, heat, link, pressed, sample
+from finite_elements_stress import (
+    CORNER,
+    CUT,
+    EXPANSION,
+    HALF_HEIGHT,
+    LENGTH,
+    POISSON,
+    RADIUS,
+    WEIGHT,
+    YOUNG,
+    Pressed,
+    heat,
+    link,
+    pressed,
+    sample,
+)
 from skfem.models.elasticity import lame_parameters
 
 SIZE = 0.6
