@@ -20,6 +20,7 @@ from rich.console import Console
 from rich.table import Table
 from scipy.spatial import Delaunay, KDTree
 from skfem import Basis, ElementTriP2, LinearForm, MeshTri, MeshTri2, asm
+from skfem.element import DiscreteField
 from skfem.models.elasticity import lame_parameters
 
 import bemcontact
@@ -180,7 +181,9 @@ class Pressed:
         """σxx, σyy, σxy, projected on continuous quadratic functions: smoother than the gradient itself."""
         basis = self.body.basis
         lam, mu = lame_parameters(YOUNG, POISSON)
-        du = np.asarray(basis.interpolate(self.displacement)[1])
+        field = basis.interpolate(self.displacement)
+        assert isinstance(field, DiscreteField)
+        du = np.asarray(field.grad)
         swelling = (3 * lam + 2 * mu) * EXPANSION * heat(*np.asarray(basis.global_coordinates()))
         mean = lam * (du[0, 0] + du[1, 1]) - swelling
         scalar = basis.with_element(ElementTriP2())
