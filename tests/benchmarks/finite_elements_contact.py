@@ -119,7 +119,8 @@ class ElasticBody:
     @cached_property
     def held_freedoms(self) -> IntArray:
         """Unknowns that are zero."""
-        return np.concatenate([self.freedoms[axis, np.unique(self.sides(level))] for level, axis in self.held])
+        held = [self.freedoms[axis, np.unique(self.sides(level))] for level, axis in self.held]
+        return np.concatenate([np.zeros(0, int), *held])
 
     def sides(self, level: Field) -> IntArray:
         """Nodes (m, 3), the middle one in between, of the sides on the boundary where level(x, y) = 0."""
