@@ -154,7 +154,7 @@ def test_where_points_are():
     corners = field.locate(np.array([[-1.0, 0], [1, 0]]))
     assert not corners.inside.any()
     assert (corners.node >= 0).all()
-    starts = mesh.nodes[np.flatnonzero(~smooth_starts(body, mesh))]
+    starts = mesh.nodes[np.flatnonzero(~smooth_starts(Outline(problem=body, mesh=mesh)))]
     assert sorted(map(tuple, starts.round(12).tolist())) == [(-1.0, 0.0), (1.0, 0.0)]
 
 
@@ -164,6 +164,6 @@ def test_edges_under_the_same_conditions_go_on():
     zone = {"foot": {"edges": ["lower", "upper"], "surface": FAR}}
     whole = problem({"outer": halves})
     mesh = build(whole)
-    assert smooth_starts(whole, mesh).sum() == len(mesh.elements) - 2
+    assert smooth_starts(Outline(problem=whole, mesh=mesh)).sum() == len(mesh.elements) - 2
     both = Problem(name="disc", material=whole.material, boundary=whole.boundary, contact_zones=zone)
-    assert smooth_starts(both, mesh).all()
+    assert smooth_starts(Outline(problem=both, mesh=mesh)).all()
