@@ -13,11 +13,11 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from bemcontact.analysis.body_stress import BodyStress
-from bemcontact.analysis.stress import Stress
 from bemcontact.analysis.triangulated_body import TriangulatedBody
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.checks.attributes import PLACE, WithHints, Words
+from bemcontact.contact.stress import Stress
 
 RISE, SEARCHES = 0.3, 24
 """Part of the largest stress at a point from which on a search begins at others, and the most searches."""

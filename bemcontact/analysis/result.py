@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from bemcontact.analysis.body_stress import BodyStress
 from bemcontact.analysis.largest_stress import LargestStresses, largest_stresses
-from bemcontact.analysis.stress import EdgeStress, Stress
 from bemcontact.analysis.triangulated_body import TriangulatedBody, triangulated_body
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy, together
@@ -29,6 +28,7 @@ from bemcontact.contact.record import (
     units_record,
 )
 from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.contact.stress import EdgeStress, Stress
 from bemcontact.errors import ProblemError
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem

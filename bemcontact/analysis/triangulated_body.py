@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from bemcontact.analysis.body_stress import BodyStress
-from bemcontact.analysis.stress import Stress
 from bemcontact.arrays import Array, IntArray
 from bemcontact.bem.triangulation import triangulation
 from bemcontact.checks.attributes import PLACE, WithHints, Words
+from bemcontact.contact.stress import Stress
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
