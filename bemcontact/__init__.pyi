@@ -8,13 +8,6 @@ from .analysis.result import Result as Result
 from .analysis.solve import condense as condense
 from .analysis.solve import random_starts as random_starts
 from .analysis.solve import solve as solve
-from .analysis.stress import EdgeStress as EdgeStress
-from .analysis.stress import LargestStresses as LargestStresses
-from .analysis.stress import PointKind as PointKind
-from .analysis.stress import Stress as Stress
-from .analysis.stress import StressPeak as StressPeak
-from .analysis.stress import TriangulatedBody as TriangulatedBody
-from .analysis.stress_operator import StressOperator as StressOperator
 from .analysis.stress_operator import stress_operator as stress_operator
 from .assessment.comparison import Comparison as Comparison
 from .contact.condensed_contact import CondensedContact as CondensedContact
@@ -24,6 +17,13 @@ from .contact.solution import ContactSolution as ContactSolution
 from .contact.solution import LocalSearch as LocalSearch
 from .contact.solution import Status as Status
 from .contact.solution import Trace as Trace
+from .contact.stress import EdgeStress as EdgeStress
+from .contact.stress import LargestStresses as LargestStresses
+from .contact.stress import PointKind as PointKind
+from .contact.stress import Stress as Stress
+from .contact.stress import StressPeak as StressPeak
+from .contact.stress import TriangulatedBody as TriangulatedBody
+from .contact.stress_operator import StressOperator as StressOperator
 from .errors import BemContactError as BemContactError
 from .errors import NotConvexError as NotConvexError
 from .errors import OptionError as OptionError
@@ -42,6 +42,7 @@ from .modelling.contact_model import model as model
 from .modelling.gap_design.design import design_gap as design_gap
 from .modelling.gap_design.designed_gap import GapDesign as GapDesign
 from .modelling.gap_design.relief import Relief as Relief
+from .modelling.stress_bounds import ModelStress as ModelStress
 from .options import Equilibrium as Equilibrium
 from .options import Rows as Rows
 from .options import SolveOptions as SolveOptions

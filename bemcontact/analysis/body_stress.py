@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.adaptivity.wedge_exponents import FREE, Face, contact_face, stress_is_infinite
-from bemcontact.analysis.stress import EdgeStress, PointKind, Stress
 from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import CORNER, BoundaryState, build
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.stress_field import NEARLY, Located, StressField
+from bemcontact.contact.stress import EdgeStress, PointKind, Stress
 from bemcontact.errors import ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour

@@ -12,9 +12,9 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from bemcontact.analysis.body_stress import BodyStress
-from bemcontact.analysis.stress import LargestStresses, Stress, StressPeak, TriangulatedBody
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
+from bemcontact.contact.stress import LargestStresses, Stress, StressPeak, TriangulatedBody
 
 RISE, SEARCHES = 0.3, 24
 """Part of the largest stress at a point from which on a search begins at others, and the most searches."""

@@ -6,7 +6,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bemcontact.analysis.stress import EdgeStress, LargestStresses, Stress, TriangulatedBody
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy, together
 from bemcontact.assessment.certificate import Certificate
@@ -26,6 +25,7 @@ from bemcontact.contact.record import (
     units_record,
 )
 from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.contact.stress import EdgeStress, LargestStresses, Stress, TriangulatedBody
 from bemcontact.errors import ProblemError
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problem.problem import Problem

@@ -1,63 +1,21 @@
 """Stress at points as a linear function of contact pressures and rigid amplitudes, for models that bound it."""
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bemcontact.adaptivity.adapt import meshed
 from bemcontact.analysis.body_stress import ensure_in_body, infinite_starts, kinds
 from bemcontact.analysis.displaced_body import acting_volume_loads
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.solve import ensure_kind
-from bemcontact.analysis.stress import PointKind, Stress
-from bemcontact.arrays import Array, BoolArray, IntArray, real_array
+from bemcontact.arrays import BoolArray, IntArray, real_array
 from bemcontact.bem.condense import Condensation, boundary_columns, condensed
 from bemcontact.bem.stress_field import StressField
 from bemcontact.blas_threads import one_thread
-from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.stress import PointKind
+from bemcontact.contact.stress_operator import StressOperator
 from bemcontact.errors import ProblemError
 from bemcontact.problem.problem import Problem
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class StressOperator:
-    """σ = S_p p + S_a a + s_0 at k points, with s_0 = Σ_j f_j s_j over the loadings.
-
-    The second axis of all parts counts σxx, σyy, σxy and σzz.
-    """
-
-    contact: CondensedContact
-    """The condensed body, whose pressures p (n,) [p] and rigid amplitudes a (r,) [L] these are."""
-    points: Array
-    """Points (k, 2) [L] of the undeformed body."""
-    kind: NDArray[np.str_]
-    """A `PointKind` for each point: "inside", "boundary" or "corner"."""
-    pressure: Array
-    """S_p (k, 4, n)."""
-    amplitudes: Array
-    """S_a (k, 4, r) [p/L]: zero, for free motions are rigid."""
-    loads: Array
-    """s_j (k, 4, 1 + c) [p] of the permanent loads, then of what each load case adds."""
-
-    @property
-    def constant(self) -> Array:
-        """s_0 (k, 4) [p] of the loads that act on `contact`."""
-        return self.loads @ np.append(1.0, self.contact.cases.factors)
-
-    def at(self, pressure: ArrayLike, amplitudes: ArrayLike | None = None) -> Stress:
-        """Stress of pressures (n,) [p] and rigid amplitudes (r,) [L], zero if None, under the loads that act.
-
-        Raises
-        ------
-        ProblemError
-            If an array has another length.
-        """
-        p = real_array(pressure, "pressure", (self.pressure.shape[2],))
-        zero = np.zeros(self.amplitudes.shape[2])
-        a = zero if amplitudes is None else real_array(amplitudes, "amplitudes", zero.shape)
-        values = self.pressure @ p + self.amplitudes @ a + self.constant
-        return Stress(points=self.points, components=values[:, :3], zz=values[:, 3], kind=self.kind)
 
 
 @one_thread

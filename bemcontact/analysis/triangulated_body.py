@@ -1,8 +1,8 @@
 """Displacement and stress all over a body, on triangles that fill it."""
 
 from bemcontact.analysis.body_stress import BodyStress
-from bemcontact.analysis.stress import TriangulatedBody
 from bemcontact.bem.triangulation import triangulation
+from bemcontact.contact.stress import TriangulatedBody
 
 
 def triangulated_body(body: BodyStress) -> TriangulatedBody:

@@ -15,35 +15,20 @@ from bemcontact.checks.arguments import instance_of, real_number, shown
 from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales
+from bemcontact.contact.stress_operator import StressOperator, ensure_of
 from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import Answer, minimize_convex
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
 from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scale
+from bemcontact.modelling.contact_problem import ContactProblem, ensure_convex
 from bemcontact.modelling.model_result import ModelResult, judged, read_back, solution_at
 from bemcontact.modelling.parameters import Parameters, Value
+from bemcontact.modelling.stress_bounds import ModelStress
 from bemcontact.options import Weights, ensure_whole
 
 WIDE = 1e5
 """Gaps over the displacements under the load from which a load is light: Clarabel's tolerance takes these digits."""
-
-
-class ContactProblem(cp.Problem):
-    """A cvxpy problem that is scaled and solved as all models are; with arguments, by cvxpy, which calls Clarabel."""
-
-    def solve(self, *args: Any, **options: Any) -> Any:
-        """Solve and return the value; arguments, and options such as a solver, are those of `cvxpy.Problem.solve`."""
-        if args or options:
-            return super().solve(*args, **{"solver": cp.CLARABEL, **options})
-        minimize_convex(self, as_stated=True)
-        return self.value
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> "ContactProblem":
-        """Refuse: cvxpy keeps what it compiled with the old variables, and aborts the process when it meets the new."""
-        raise ProblemError(
-            "a problem of a model cannot be copied, because cvxpy confuses its variables; copy the model, and state "
-            "the problem again with its method 'problem'"
-        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -148,6 +133,22 @@ class ContactModel(WithHints):
             raise ProblemError(f"there is no contact zone {shown(zone)}; there are: {', '.join(names)}")
         inside = np.ones(self.original.size, bool) if zone is None else self.original.zone == names.index(zone)
         return self.original.forces(inside.astype(float)).T @ self.pressure
+
+    def stress(self, operator: StressOperator) -> ModelStress:
+        """Stress at points of the body, as expressions that can be bounded.
+
+        Parameters
+        ----------
+        operator : of the same problem, as `bemcontact.stress_operator` makes it; a model of `operator.contact` fits
+
+        Raises
+        ------
+        ProblemError
+            It belongs to another body, mesh or load.
+        """
+        instance_of(operator, StressOperator, "operator", "bemcontact.stress_operator makes one")
+        ensure_of(operator, self.original)
+        return ModelStress.of(operator, self.pressure, self.motions, self.case_factors, self.scales.pressure)
 
     @property
     def duals(self) -> dict[str, Array]:
@@ -395,23 +396,6 @@ def _rebuilt(contact: CondensedContact, values: list[Any], duals: list[Any]) -> 
 def _is_constraint(item: object) -> bool:
     """Whether cvxpy takes an item as a constraint: a comparison of numbers, True or False, is one too."""
     return isinstance(item, cp.Constraint | bool | np.bool_)
-
-
-def ensure_convex(problem: cp.Problem) -> None:
-    """Refuse, with a `ProblemError`, a problem that is not convex, or that each change of a parameter compiles anew."""
-    if problem.is_dpp():
-        return
-    if problem.is_dcp():
-        raise ProblemError(
-            "parameters enter what was added so that each change of them is a new problem (not DPP): let each term "
-            "have at most one parameter as a factor, or put a new parameter for their product"
-        )
-    parts = [("the objective", problem.objective), *((f"constraint {c}", c) for c in problem.constraints)]
-    bad = next(name for name, part in parts if not part.is_dcp())
-    raise ProblemError(
-        f"the model is not convex by cvxpy's rules (DCP) in {bad:.200}; write what was added with convex functions "
-        "that are minimized or bounded from above"
-    )
 
 
 def _of_light_load(contact: CondensedContact) -> str:

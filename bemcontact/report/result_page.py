@@ -6,8 +6,8 @@ from typing import Any
 from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
-from bemcontact.analysis.stress import StressPeak
 from bemcontact.assessment.contender import OUTCOMES
+from bemcontact.contact.stress import StressPeak
 from bemcontact.options import StressMeasure
 from bemcontact.problem import Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, bars_of, mesh_in_short, with_bar

@@ -63,7 +63,7 @@ CALLS: dict[str, Call] = {
     "loads": (bemcontact.loads, {"text": "a: 1", "name": "text", "overrides": (), "variant": None}),
     "condense": (bemcontact.condense, {"problem": PROBLEM}),
     "stress_operator": (bemcontact.stress_operator, {"problem": PROBLEM, "points": [[1, 0.5]]}),
-    "StressOperator.at": (OPERATOR.at, {"pressure": np.ones(5), "amplitudes": None}),
+    "StressOperator.at": (OPERATOR.at, {"pressure": np.ones(5), "amplitudes": None, "factors": None}),
     "Result.stress": (SOLVED.stress, {"points": [[1, 0.5]]}),
     "Result.displacement": (SOLVED.displacement, {"points": [[1, 0.5]]}),
     "solve": (
@@ -145,6 +145,7 @@ CALLS: dict[str, Call] = {
         {"pressure": ONES, "displacement": ONES, "label": "mine"},
     ),
     "model": (bemcontact.model, {"contact": CONTACT}),
+    "ContactModel.stress": (MODEL.stress, {"operator": OPERATOR}),
     "ContactModel.resultant": (MODEL.resultant, {"zone": None}),
     "ContactModel.problem": (MODEL.problem, {"extra_objective": None, "extra_constraints": ()}),
     "ContactModel.solve": (
@@ -155,7 +156,7 @@ CALLS: dict[str, Call] = {
         bemcontact.design_gap,
         {
             "contact": PAIR, "relief": Relief(lower=0.0, upper=0.1), "zone": "none of them", "cases": None,
-            "goal": "peak", "progress": None,
+            "goal": "peak", "progress": None, "stress": None, "von_mises": None,
         },
     ),
     "design_gap, place": (

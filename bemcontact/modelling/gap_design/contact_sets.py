@@ -17,6 +17,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales
+from bemcontact.contact.stress_operator import StressOperator
 from bemcontact.errors import SolverError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import minimize_convex
@@ -24,6 +25,7 @@ from bemcontact.formulations.scaling import ScaledContact, scale
 from bemcontact.modelling.gap_design.designed_gap import Goal
 from bemcontact.modelling.gap_design.relief import Profiles
 from bemcontact.modelling.parameters import value_of
+from bemcontact.modelling.stress_bounds import ModelStress
 
 WEAK = 1e-6
 """Scaled pressure or gap that is zero to the tolerance of the solver."""
@@ -78,25 +80,66 @@ class SharedProfile:
     states : scaled, without profile
     profiles : to choose from
     scales : displacement [L] and pressure [p]
+    factors : (c,) of the load cases in each state
+    stress : at points where von Mises's stress is bounded or minimized, if it is
+    limit : of von Mises's stress there [p], if there is one
     """
 
     states: tuple[ScaledContact, ...]
     profiles: Profiles
     scales: ContactScales
     goal: Goal
+    factors: tuple[Array, ...]
+    stress: StressOperator | None = None
+    limit: float | None = None
 
     @classmethod
-    def of(cls, contacts: Sequence[CondensedContact], profiles: Profiles, goal: Goal) -> "SharedProfile":
+    def of(
+        cls,
+        contacts: Sequence[CondensedContact],
+        profiles: Profiles,
+        goal: Goal,
+        stress: StressOperator | None = None,
+        limit: float | None = None,
+    ) -> "SharedProfile":
         """Scale all states by the largest of their scales."""
         scales = max(contact.scales for contact in contacts)
         states = tuple(scale(contact, scales) for contact in contacts)
-        return cls(states=states, profiles=profiles, scales=scales, goal=goal)
+        factors = tuple(contact.cases.factors for contact in contacts)
+        return cls(
+            states=states, profiles=profiles, scales=scales, goal=goal, factors=factors, stress=stress, limit=limit
+        )
 
     def measure(self, pressures: Iterable[Array]) -> float:
         """The goal [p] at pressures (n,) [p]."""
         if self.goal is Goal.PEAK:
             return max(float(p.max()) for p in pressures)
+        if self.goal is Goal.VON_MISES:
+            return self.von_mises(pressures) or 0.0
         return max(float(np.linalg.norm(self._deviation @ p)) for p in pressures)
+
+    def von_mises(self, pressures: Iterable[Array]) -> float | None:
+        """The largest von Mises stress [p] at pressures (n,) [p] of all states; None without points."""
+        stress = self.stress
+        if stress is None:
+            return None
+        pairs = zip(pressures, self.factors, strict=True)
+        return max(float(stress.at(p, factors=factors).von_mises.max()) for p, factors in pairs)
+
+    def excess(self, pressures: Iterable[Array]) -> float:
+        """By how much von Mises's stress is above its limit, over the limit; zero if it is within."""
+        return 0.0 if self.limit is None else max(0.0, (self.von_mises(pressures) or 0.0) / self.limit - 1)
+
+    def _stress_bounds(self, p: cp.Variable, factors: Array, top: cp.Variable) -> Iterator[cp.Constraint]:
+        """Bound von Mises's stress of a state by its limit, and by the goal if it is that."""
+        if self.stress is None:
+            return
+        T = self.scales.pressure  # rigid amplitudes give no stress
+        mises = ModelStress.of(self.stress, T * p, None, cp.Constant(factors) if len(factors) else None, T).scaled_mises
+        if self.limit is not None:
+            yield mises <= self.limit / T
+        if self.goal is Goal.VON_MISES:
+            yield mises <= top
 
     @property
     def _deviation(self) -> Array:
@@ -117,14 +160,18 @@ class SharedProfile:
         constraints: list[cp.Constraint] = [rows[low] >= profiles.low[low] / U] if low.any() else []
         constraints += [rows[high] <= profiles.high[high] / U] if high.any() else []
         pressures, motions, gaps = [], [], []
-        for state in self.states:
+        for state, factors in zip(self.states, self.factors, strict=True):
             n, k = state.rigid_motions.shape
             p, a = cp.Variable(n), cp.Variable(k) if k else None
             gap = state.offset + relief + state.compliance @ p
             if a is not None:
                 gap = gap + state.rigid_motions @ a
                 constraints.append(state.equilibrium.T @ p == -state.motion_load)
-            constraints.append(p <= top if self.goal is Goal.PEAK else cp.norm(self._deviation @ p) <= top)
+            constraints += self._stress_bounds(p, factors, top)
+            if self.goal is Goal.PEAK:
+                constraints.append(p <= top)
+            elif self.goal is Goal.UNIFORM:
+                constraints.append(cp.norm(self._deviation @ p) <= top)
             pressures.append(p)
             motions.append(a)
             gaps.append(gap)

@@ -6,6 +6,7 @@ problem.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,9 +15,10 @@ from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
 from bemcontact.blas_threads import one_thread
-from bemcontact.checks.arguments import ensure_callable, instance_of, shown
+from bemcontact.checks.arguments import ensure_callable, instance_of, real_number, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
+from bemcontact.contact.stress_operator import StressOperator, ensure_of
 from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.active_set import solve_active_set
@@ -45,6 +47,8 @@ def design_gap(
     arc: tuple[float, float] | None = None,
     cases: Sequence[Mapping[str, float]] | None = None,
     goal: Goal | str = Goal.PEAK,
+    stress: StressOperator | None = None,
+    von_mises: float | None = None,
     progress: Callable[[str, str], object] | None = None,
 ) -> GapDesign:
     """Find the profile within bounds that, added to the initial gap, makes the peak pressure smallest.
@@ -57,7 +61,9 @@ def design_gap(
         position on it [L], the whole zone if left out
     cases : factors of load cases, one mapping for each load state, as in `CondensedContact.with_factors`
     goal : a `Goal` or its name: "peak" (the largest pressure anywhere) or "uniform" (the mean square deviation of the
-        pressure on the interval from its mean there)
+        pressure on the interval from its mean there) or "von_mises" (the largest stress at the points of `stress`)
+    stress : stress at points of the body, as `bemcontact.stress_operator` makes it of the same problem
+    von_mises : limit of von Mises's stress at these points [p], in each load state
     progress : called with two texts, the name of a stage and how far it has come, which is empty when it begins
 
     Returns
@@ -69,7 +75,8 @@ def design_gap(
     Raises
     ------
     ProblemError
-        Bounds exclude each other, states are not those of one body, or a state has no contact state.
+        Bounds exclude each other, states are not those of one body, a state has no contact state, the operator is that
+        of another problem, or no profile is found that keeps the limit of stress.
     SolverError
         Clarabel breaks down.
     """
@@ -78,7 +85,8 @@ def design_gap(
     states, goal = _states(contact, cases), _goal(goal)
     instance_of(relief, Relief, "relief", "it holds the bounds on the profile: Relief(lower=0.0, upper=0.1)")
     profiles = Profiles.of(states[0], relief, zone, arc)
-    shared = SharedProfile.of(states, profiles, goal)
+    limit = _limit(states, goal, stress, von_mises)
+    shared = SharedProfile.of(states, profiles, goal, stress, limit)
     say("without a profile", "")
     before = tuple(_solved(state, np.zeros(state.size)) for state in states)
     best = _best(shared, states, say)
@@ -124,6 +132,8 @@ def _carried_out(
         value=reached,
         lower_bound=bound,
         proved_optimal=reached - bound <= MET * reached,
+        von_mises_limit=shared.limit,
+        von_mises=shared.von_mises(state.pressure for state in after),
     )
 
 
@@ -151,6 +161,47 @@ def _states(
                     "design are one body on the same surfaces, as CondensedContact.with_factors makes them"
                 )
     return states
+
+
+def _limit(
+    states: Sequence[CondensedContact], goal: Goal, stress: StressOperator | None, von_mises: float | None
+) -> float | None:
+    """Check that a limit of stress and the points that it holds at fit together."""
+    if stress is None:
+        if von_mises is not None or goal is Goal.VON_MISES:
+            raise ProblemError("von Mises's stress needs points: give stress, which bemcontact.stress_operator makes")
+        return None
+    instance_of(stress, StressOperator, "stress", "bemcontact.stress_operator makes one of a problem and points")
+    for state in states:
+        ensure_of(stress, state)
+    if von_mises is None:
+        if goal is Goal.VON_MISES:
+            return None
+        raise ProblemError("stress is given, and nothing bounds it; give the limit von_mises, or the goal 'von_mises'")
+    limit = real_number(von_mises, "von_mises")
+    if limit <= 0:
+        raise ProblemError(f"von_mises, the limit of stress, must be positive; found {limit:g}")
+    return limit
+
+
+def _within_limit(
+    shared: SharedProfile, states: Sequence[CondensedContact], say: Callable[[str, str], object]
+) -> BestProfile:
+    """A design within the limit of stress, from that of the least stress; `ProblemError` if this is above the limit."""
+    say("profiles of low stress", "")
+    limit, T = shared.limit, shared.scales.pressure
+    assert limit is not None
+    lowest = replace(shared, goal=Goal.VON_MISES, limit=None)
+    least = _best(lowest, states, say)
+    piece = _descended(shared, least.touching) if least.value * T <= limit else None
+    if piece is not None:
+        return piece
+    bound = lowest.relaxed(least.value * T).bound
+    whether = "no profile within the bounds keeps" if bound > limit else "no profile was found that keeps"
+    raise ProblemError(
+        f"{whether} von Mises's stress at the given points below {limit:.5g}: {least.value * T:.5g} is the least that "
+        f"was reached, and none goes below {bound:.5g}; raise the limit, or widen the bounds on the profile"
+    )
 
 
 def _goal(goal: Goal | str) -> Goal:
@@ -196,6 +247,8 @@ def _best(shared: SharedProfile, states: Sequence[CondensedContact], say: Callab
         ends += [] if end is None else [end]
         known = f", {_least(ends).value * shared.scales.pressure:.4g} is reached" if ends else ""
         say("contact sets", f"start {number} of {len(starts)}{known}")
+    if not ends and shared.limit is not None:
+        return _within_limit(shared, states, say)
     if not ends:
         raise SolverError("no convex program of the design had an optimum; look in the mesh for very short elements")
     return _least(ends)
@@ -221,7 +274,7 @@ def _starts(shared: SharedProfile, states: Sequence[CondensedContact]) -> Iterat
     corners = [_corner(profiles, rng.standard_normal(len(there))) for _ in range(CORNERS)]
     mixed = [rng.dirichlet(np.ones(len(few))) @ few for few in zip(corners, corners[1:], corners[2:], strict=False)]
     looked_at = [_state(states, profiles.shapes @ coefficients) for coefficients in (*corners, *mixed)]
-    looked_at.sort(key=lambda state: shared.measure(state[0]))
+    looked_at.sort(key=lambda state: (shared.excess(state[0]), shared.measure(state[0])))
     distinct = {sets.tobytes(): sets for _, sets in looked_at}
     yield from list(distinct.values())[:KEPT]
 

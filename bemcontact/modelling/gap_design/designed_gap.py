@@ -28,9 +28,14 @@ class Goal(StrEnum):
 
     PEAK = "peak"
     UNIFORM = "uniform"
+    VON_MISES = "von_mises"
 
 
-MEASURED = {Goal.PEAK: "The largest pressure", Goal.UNIFORM: "The root mean square deviation from a uniform pressure"}
+MEASURED = {
+    Goal.PEAK: "The largest pressure",
+    Goal.UNIFORM: "The root mean square deviation from a uniform pressure",
+    Goal.VON_MISES: "The largest von Mises stress at the given points",
+}
 
 
 class LoadStateRecord(FootprintRecord):
@@ -102,6 +107,10 @@ class GapDesign(Leaf):
     """Lower bound of the goal within the bounds on the profile, by convex relaxation [p]."""
     proved_optimal: bool
     """Whether the value is at the bound, to a millionth."""
+    von_mises_limit: float | None = None
+    """Limit of von Mises's stress at the given points, if there is one [p]."""
+    von_mises: float | None = None
+    """Largest von Mises stress at the given points with the profile, of all load states; None without points [p]."""
 
     def __post_init__(self) -> None:
         """Make arrays read-only."""
@@ -149,8 +158,20 @@ class GapDesign(Leaf):
     @computed_field
     @property
     def verified(self) -> bool:
-        """Whether all load states with the profile are certified and have the designed pressure, to a millionth."""
-        return all(state.certificate.certified for state in self.after) and self.difference <= AGREED
+        """Whether all load states with the profile are certified and as designed, to a millionth.
+
+        They have the designed pressure, and von Mises's stress is within its limit.
+        """
+        return all(state.certificate.certified for state in self.after) and self.difference <= AGREED and self._within
+
+    @property
+    def _within(self) -> bool:
+        """Whether von Mises's stress of the contact states is within its limit, if there is one."""
+        return (
+            self.von_mises_limit is None
+            or self.von_mises is None
+            or self.von_mises <= self.von_mises_limit * (1 + AGREED)
+        )
 
     @computed_field
     @property
@@ -174,6 +195,10 @@ class GapDesign(Leaf):
             check = (
                 f"The contact states with the profile are not as designed: pressures differ by {self.difference:.0e} "
                 f"of the peak. {' '.join(state.certificate.words for state in self.after)}"
+            )
+        if self.von_mises_limit is not None:
+            check += (
+                f" Von Mises's stress at the given points is {self.von_mises:.5g}, limit {self.von_mises_limit:.5g}."
             )
         return f"{change_of_goal}{self._elsewhere} {proof} {check}{self._at_an_end}"
 

@@ -6,9 +6,9 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import PathPatch
 
 from bemcontact.analysis.result import Result
-from bemcontact.analysis.stress import PointKind
 from bemcontact.arrays import Array
 from bemcontact.bem.mesh import BoundaryState, element_curves
+from bemcontact.contact.stress import PointKind
 from bemcontact.options import StressMeasure
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.contact import OVERHANG, body_extent, outline_of

@@ -6,8 +6,8 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation, TriContourSet
 
 from bemcontact.analysis.result import Result
-from bemcontact.analysis.stress import PointKind
 from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.contact.stress import PointKind
 from bemcontact.options import StressMeasure
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.page import BLACK, labeled

@@ -13,7 +13,7 @@ from modelling.tool_contact import tool_contact
 from scipy.optimize import linprog
 
 import bemcontact
-from bemcontact import GapDesign, Relief, design_gap, spec
+from bemcontact import GapDesign, Relief, StressOperator, design_gap, spec
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import clarabel, complementarity
@@ -404,3 +404,65 @@ def test_round_off_changes_neither_the_design_nor_its_verdict(states, relief):
     assert other.value == pytest.approx(plain.value, rel=1e-7)
     assert (other.verified, other.proved_optimal) == (plain.verified, plain.proved_optimal)
     assert other.difference < 1e-8
+
+
+@cache
+def under_the_punch() -> StressOperator:
+    problem = spec.load(GALLERY / "flat_punch.yaml", variant="stated mesh")
+    return bemcontact.stress_operator(problem, [[4.6, -0.5], [4.0, -1.0], [2.0, -2.0]])
+
+
+CROWN = Relief(lower=0, upper=0.01, slope=0.004, curvature=0.004)
+
+
+def test_a_limit_of_stress_is_kept_by_a_solve_on_the_designed_surface():
+    """To a relative 0.004, the largest slope, by which normals of the surface lean; the plain design is above it."""
+    operator, limit = under_the_punch(), 95.0
+    plain = design_gap(operator.contact, CROWN)
+    design = design_gap(operator.contact, CROWN, stress=operator, von_mises=limit)
+    assert operator.at(plain.after[0].pressure).von_mises.max() > 1.1 * limit
+    assert design.verified
+    assert design.peak >= plain.lower_bound
+    assert operator.at(design.after[0].pressure).von_mises.max() <= limit * (1 + 1e-6)
+    assert design.von_mises is not None
+    assert design.von_mises <= limit * (1 + 1e-6)
+    assert not replace(design, von_mises_limit=0.9 * limit).verified
+    problem = spec.load(GALLERY / "flat_punch.yaml", variant="stated mesh")
+    zone = problem.contact_zones["punch"].model_copy(update={"surface": design.surface()})
+    relieved_problem = problem.model_copy(update={"contact_zones": {"punch": zone}, "reference": {}})
+    result = bemcontact.solve(relieved_problem)
+    assert result.stress(operator.points).von_mises.max() <= limit * (1 + 0.004)
+
+
+@pytest.mark.slow
+def test_a_limit_of_stress_that_cannot_be_kept_is_refused():
+    """The least stress that is reached and the lower bound are those of the goal "von_mises"."""
+    operator = under_the_punch()
+    lowest = design_gap(operator.contact, CROWN, goal="von_mises", stress=operator)
+    assert lowest.verified
+    assert lowest.value == operator.at(lowest.after[0].pressure).von_mises.max()
+    for limit, words in (
+        (0.9 * lowest.lower_bound, "no profile within"),
+        (0.99 * lowest.value, "no profile was found"),
+    ):
+        numbers = f"{lowest.value:.5g} is the least.* {lowest.lower_bound:.5g};"
+        with pytest.raises(ProblemError, match=f"{words}.* {numbers}"):
+            design_gap(operator.contact, CROWN, stress=operator, von_mises=limit)
+    kept = design_gap(operator.contact, CROWN, stress=operator, von_mises=1.01 * lowest.value)
+    assert kept.verified
+
+
+def test_limits_of_stress_that_do_not_fit_are_refused():
+    """A limit needs points, points need a limit, and both need the same problem."""
+    operator = under_the_punch()
+    for given, words in (
+        ({"von_mises": 95}, "needs points"),
+        ({"goal": "von_mises"}, "needs points"),
+        ({"stress": operator}, "nothing bounds it"),
+        ({"stress": operator, "von_mises": 0}, "positive"),
+        ({"stress": [[1, 1]], "von_mises": 95}, "stress_operator"),
+    ):
+        with pytest.raises(ProblemError, match=words):
+            design_gap(operator.contact, CROWN, **given)
+    with pytest.raises(ProblemError, match=r"operator\.contact"):
+        design_gap(condensed("hertz_small"), Relief(lower=0, upper=0.1), stress=operator, von_mises=95)

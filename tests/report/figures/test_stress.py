@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.tri import TriContourSet
 
 import bemcontact
-from bemcontact.analysis.stress import PointKind
+from bemcontact.contact.stress import PointKind
 from bemcontact.options import StressMeasure
 from bemcontact.report import figures
 
