@@ -139,7 +139,7 @@ class ContactModel(WithHints):
 
         Parameters
         ----------
-        operator : of the same problem, as `bemcontact.stress_operator` makes it; a model of `operator.contact` fits
+        operator : of the same problem, as `bemcontact.stress_operator` makes it; a model of its contact fits
 
         Raises
         ------

@@ -207,5 +207,7 @@ def _picture(name: str, svg: bytes, first: Result, stress: StressMeasure) -> Any
         f"{zones[int(number) - 1]}: {ZONE_PICTURES[kind]}" if number else sentence_case(ZONE_PICTURES.get(kind, ""))
     )
     caption = of_zone if number or name not in CAPTIONS else CAPTIONS[name]
+    if name == "problem" and first.problem is not None and first.problem.case is not None:
+        caption = f"{caption}; with the loads of {first.problem.case}"
     caption = caption.replace("{stress}", stress.words if number else sentence_case(stress.words))
     return name, picture(svg, caption, f"{first.contact.name}. {caption}.")

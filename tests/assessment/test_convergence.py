@@ -14,7 +14,9 @@ def print_of(peak: float, *ends: float, zone: str = "foot") -> Footprint:
         ContactInterval(zone=zone, start=(0.0, 0.0), end=(end, 0.0), start_arc=0.0, end_arc=end) for end in ends
     )
     resultant = Resultant(force=(0.0, 1.0), moment=0.0, line_point=None)
-    return Footprint(intervals=intervals, peak=Peak(pressure=peak, at=(0.0, 0.0)), resultant=resultant, forces={})
+    return Footprint(
+        intervals=intervals, peak=Peak(pressure=peak, at=(0.0, 0.0)), resultant=resultant, forces={}, moments={}
+    )
 
 
 @pytest.mark.parametrize("refine", [(1, 2, 4), (1, 2, 3), (2, 3, 7)])

@@ -173,7 +173,11 @@ def test_where_nothing_touches_nothing_holds():
     problem = bemcontact.loads(BLOCK)
     contact = bemcontact.condense(problem)
     nothing = Footprint(
-        intervals=(), peak=None, resultant=Resultant(force=(0.0, 0.0), moment=0.0, line_point=None), forces={}
+        intervals=(),
+        peak=None,
+        resultant=Resultant(force=(0.0, 0.0), moment=0.0, line_point=None),
+        forces={},
+        moments={},
     )
     found = score(expected(problem, contact), contact, nothing, np.zeros(contact.size))
     assert not any(item.holds for item in found)

@@ -32,6 +32,14 @@ WIDTHS = """
 })()
 """
 
+CUT_CELLS = """
+(() => {
+  const cells = [...document.querySelectorAll(".cards td")];
+  cells.forEach(cell => { cell.textContent = "(-0.06, -1200.00) ± 0.23 N/mm"; });
+  return [cells.length, cells.filter(cell => cell.scrollWidth > cell.clientWidth + 1).length];
+})()
+"""
+
 # Text is judged against the nearest background that is painted, by the formula of WCAG 2.2.
 CONTRASTS = """
 (() => {
@@ -123,6 +131,15 @@ def test_a_picture_is_transparent_and_its_ink_follows_the_page(chromium: Browser
     (light, corner), (dark, other_corner) = seen
     assert corner == other_corner == 0
     assert dark != pytest.approx(light, abs=0.02)
+
+
+def test_a_long_number_is_not_cut_on_a_telephone(chromium: Browser, tmp_path: Path):
+    """A force with its error and its unit is wider than what its label leaves of a card."""
+    folder.save_result(cases(), tmp_path / "page", "name: x")
+    with opened(chromium, tmp_path / "page" / "result.html", width=380) as (page, _):
+        cells, cut = page.evaluate(CUT_CELLS)
+    assert cells > 10
+    assert cut == 0
 
 
 def test_errors_in_the_browser_are_noticed(chromium: Browser, tmp_path: Path):

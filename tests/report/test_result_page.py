@@ -77,6 +77,14 @@ def test_stress_that_is_infinite_is_told_before_its_picture_is_believed():
     assert 'id="stress"' not in render(condensed(), {}, None)
 
 
+def test_the_picture_of_the_problem_says_whose_loads_it_shows():
+    """The first of the load cases: each has its own loads, and a picture shows one of them."""
+    first = next(iter(cases().results))
+    text = read(render(cases(), {"problem": b"<svg/>"}, None)).text
+    assert f"; with the loads of {first}" in text
+    assert "with the loads of" not in read(render(rolled(), {"problem": b"<svg/>"}, None)).text
+
+
 def test_load_cases_have_the_largest_of_all():
     """The largest peak of each zone, and in which load case."""
     text = read(render(cases(), {}, None)).text

@@ -307,4 +307,5 @@ def legend_below(axes: Axes) -> None:
     handles, labels = axes.get_legend_handles_labels()
     if handles:
         columns = 3 if max(map(len, labels)) < 14 else 2 if max(map(len, labels)) < 30 else 1
-        axes.legend(loc="upper center", bbox_to_anchor=(0.45, -0.2), ncols=columns, frameon=False, fontsize=8.5)
+        below = -0.2 - 0.08 * axes.get_xlabel().count("\n")
+        axes.legend(loc="upper center", bbox_to_anchor=(0.45, below), ncols=columns, frameon=False, fontsize=8.5)

@@ -218,9 +218,8 @@ def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
         yield draw_ground(axes, points, normals, 0.03 * size, GREY)
         facing = _facing(problem, name)
         gap, normal = zone.surface.closest(facing)
-        nearest = np.flatnonzero(gap < gap.min() + FLUSH * size)
-        at = nearest[len(nearest) // 2, None]
-        yield draw_arrows(axes, facing[at] - gap[at, None] * normal[at], 0.09 * size * normal[at], GREY)
+        at = _nearest(gap, size)
+        yield draw_arrows(axes, (facing[at] - gap[at] * normal[at])[None], 0.09 * size * normal[at][None], GREY)
     yield from _draw_contours(axes, problem, mesh)
 
 
@@ -240,6 +239,12 @@ def _facing(problem: Problem, zone: str, count: int = 60) -> Array:
     """Points (k, 2) of the boundary that may touch in a zone, in order."""
     names = problem.edges_of(zone) or [edge.name for edge in problem.boundary.edges]
     return np.concatenate([problem.edge(name).points(np.linspace(0, 1, count)) for name in names])
+
+
+def _nearest(gap: Array, size: float) -> int:
+    """Index of the middle one of the points that are nearest to a rigid surface, from their gaps (k,)."""
+    nearest = np.flatnonzero(gap < gap.min() + FLUSH * size)
+    return int(nearest[len(nearest) // 2])
 
 
 def surface_line(problem: Problem, zone: str, overhang: float) -> tuple[Array, Array]:
@@ -331,8 +336,8 @@ REACH = 0.13
 def draw_tools(axes: Axes, problem: Problem) -> Iterator[tuple[Array, Name]]:
     """Draw arrows of the force and of the displacement of each tool, with the load cases that act.
 
-    An arrow ends at the point of the tool, or at the middle of its first surface, if it pushes; it starts there if it
-    pulls. Yield points (k, 2) that the arrows cover, and the text to be placed beside them.
+    An arrow ends at the point of the tool, or where its first surface is nearest to the body, if it pushes; it starts
+    there if it pulls. Yield points (k, 2) that the arrows cover, and the text to be placed beside them.
     """
     for tool in problem.tools:
         place, normal = _place(problem, tool)
@@ -344,7 +349,8 @@ def draw_tools(axes: Axes, problem: Problem) -> Iterator[tuple[Array, Name]]:
             arrow = REACH * problem.boundary.size * np.array(components[:2]) / np.linalg.norm(components[:2])
             tail = place - arrow if arrow @ normal > 0 else place
             covered.append(draw_arrows(axes, tail[None], arrow[None], color))
-        lines = tool_in_words(action, problem.units).split("; ")
+        phrases = tool_in_words(action, problem.units).split("; ")
+        lines = (phrase.replace(", ", ",\n") if len(phrase) > 28 else phrase for phrase in phrases)
         yield np.concatenate(covered), _tool_name("\n".join([wrapped(tool, 28), *lines]), any(action.free), covered[-1])
 
 
@@ -352,12 +358,12 @@ def _place(problem: Problem, tool: str) -> tuple[Array, Array]:
     """Position (2,) of the force on a tool, and the normal (2,) of its surface into the body."""
     stated = problem.tools[tool]
     zone, facing = problem.contact_zones[stated.zones[0]], _facing(problem, stated.zones[0], 61)
-    middle = facing[len(facing) // 2]
     if isinstance(zone.surface, DeflectedContour):
-        foot, normal = middle, np.array(zone.surface.unit_direction)
+        foot, normal = facing[len(facing) // 2], np.array(zone.surface.unit_direction)
     else:
-        gap, normals = zone.surface.closest(middle[None])
-        foot, normal = middle - gap[0] * normals[0], normals[0]
+        gap, normals = zone.surface.closest(facing)
+        at = _nearest(gap, problem.boundary.size)
+        foot, normal = facing[at] - gap[at] * normals[at], normals[at]
     return (foot if stated.point is None else np.array(stated.point)), normal
 
 

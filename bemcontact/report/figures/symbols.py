@@ -107,13 +107,15 @@ def draw_arrows(axes: Axes, tails: Array, vectors: Array, color: str) -> Array:
 def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence[Array]) -> list[Box]:
     """Write names in order where they cover least, on their own side of the closed polygons (j, 2) of the boundary.
 
-    `drawn` are points (k, 2) of the drawing. The limits of the axes must be set. Return the boxes of the names.
+    `drawn` are points (k, 2) of the drawing. The limits of the axes must be set. Names keep off a legend
+    and the labels of the axes. Return the boxes of what is taken.
     """
     _settle(axes)
     to_page, frame = axes.transData, _room(axes)
     ink = to_page.transform(drawn)
     walls = [Path(to_page.transform(loop)) for loop in loops]
-    taken: list[Box] = []
+    beside = [axes.xaxis.label, axes.yaxis.label, axes.get_legend()]
+    taken = [Box(*item.get_window_extent().extents) for item in beside if item is not None]
     for name in names:
         text = axes.text(0, 0, name.text, color=name.color, fontsize=9, ha="center", va="center", zorder=6)
         text.set_in_layout(False)  # or the next layout would move what it was placed beside

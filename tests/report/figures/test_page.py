@@ -23,7 +23,7 @@ from bemcontact.bem import mesh
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Problem
 from bemcontact.report import figures
-from bemcontact.report.figures.page import distance_label, pieces_of
+from bemcontact.report.figures.page import distance_label, legend_below, new_page, pieces_of
 
 
 @settings(deadline=None)
@@ -133,3 +133,16 @@ def test_distances_beyond_once_round_are_explained(seam: float, beyond: bool):
     result = bemcontact.solve(ring(seam))
     label = distance_label(result.contact, [*pieces_of(result.contact, result.touching)])
     assert ("from 62.832 on it goes round again" in label) is beyond
+
+
+@pytest.mark.parametrize("label", ["distance", "distance\nonly around the contact"])
+def test_a_legend_below_is_below_the_label_of_the_axis(label: str):
+    figure = new_page(5.4, 3.6)
+    axes = figure.add_subplot()
+    axes.plot([0, 1], label="press")
+    axes.set_xlabel(label)
+    legend_below(axes)
+    figure.draw_without_rendering()
+    legend = axes.get_legend()
+    assert legend is not None
+    assert legend.get_window_extent().y1 <= axes.xaxis.label.get_window_extent().y0

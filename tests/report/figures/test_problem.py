@@ -137,6 +137,36 @@ def test_tractions_along_an_edge_are_beside_it_in_a_row():
     assert np.abs(np.diff(np.sort(tails[:, 0]))).min() > np.ravel(arrows.U).max()
 
 
+def test_no_text_covers_the_legend():
+    """Two tools, the second at the right end, where the legend begins beside the axes."""
+    outline = {
+        "bottom": {"start": [-30, -20]}, "right": {"start": [30, -20]}, "beside": {"start": [30, 0]},
+        "seat": {"start": [18, 0]}, "rest": {"start": [10, 0]}, "left": {"start": [-30, 0]},
+    }  # fmt: skip
+    problem = Problem.model_validate(
+        {
+            "name": "block under a roller",
+            **UNITS,
+            "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{"name": name, "elements": 2, **edge} for name, edge in outline.items()]},
+            "conditions": {"bottom": {"displacement": {"x": 0, "y": 0}}},
+            "contact_zones": {
+                "roller": {
+                    "edges": "seat",
+                    "surface": {"kind": "circle", "center": [14, 10], "radius": 10, "body": "outside"},
+                }
+            },
+            "tools": {"roller": {"zones": "roller", "point": [14, 10], "force": {"y": -100}}},
+        }
+    )
+    figure = figures.figure_of_problem(problem, mesh.build(problem))
+    figure.draw_without_rendering()
+    axes = only_axes(figure)
+    legend = axes.get_legend()
+    assert legend is not None
+    assert not any(text.get_window_extent().overlaps(legend.get_window_extent()) for text in axes.texts)
+
+
 UNITS = {"units": {"length": "mm", "force": "N"}}
 
 
@@ -165,21 +195,20 @@ def test_a_force_ends_at_the_point_of_the_tool_and_a_displacement_too():
     assert len(drawn) == 2
 
 
-def test_tool_without_a_point_is_drawn_at_the_middle_of_its_surface():
-    """The round punch (1.6, 7), radius 6, is nearest to the middle (1.5, 1) of the edge at 7 - 6 = 1."""
+def test_tool_without_a_point_is_drawn_where_its_surface_is_nearest():
+    """The round punch (1.6, 7), radius 6, is nearest to the edge y = 1 with its lowest point (1.6, 7 - 6)."""
     axes = Figure().add_subplot()
     tools = {"punch": {"zones": "punch", "displacement": {"y": 0.01}}}
     [(_, name)] = draw_tools(axes, made(HELD, tools=tools))
     [(tail, vector)] = arrows(axes)
-    direction = np.array([1.5 - 1.6, 1 - 7]) / np.hypot(0.1, 6)
-    assert tail == pytest.approx(np.array([1.6, 7]) + 6 * direction)
+    assert tail == pytest.approx(np.array([1.6, 1.0]))
     assert vector[1] > 0
     assert name.text == "punch\ndisplaced by y = 0.01"
 
 
 def test_tool_has_the_load_of_the_acting_case():
     texts = [text.get_text() for text in picture(made(HELD, **HELD_CASES, **UNITS, case="push")).texts]
-    assert "punch\nloaded by y = -70 N/mm, moment = -1 N·mm/mm" in texts
+    assert "punch\nloaded by y = -70 N/mm,\nmoment = -1 N·mm/mm" in texts
 
 
 def test_the_picture_shows_the_conditions_of_the_case_that_acts():
