@@ -31,6 +31,8 @@ TABLES = (Path("README.md"), Path(".docs", "validation", "closed_forms.md"))
 """Pages with tables of errors that are written by hand, but for their numbers."""
 CASES = {"eccentric_punch": "beyond half", "roller_in_v_block": "down and aside"}
 """The load case in the picture, where it is not the first one."""
+SMALL = 0.08
+"""Extent of the only contact over that of the body below which a close-up is drawn."""
 README = ("cylinder_on_plane", "bolt_in_plate")
 """The picture at the beginning of the README."""
 ROUND_OFF = 1e-6
@@ -195,7 +197,9 @@ def pictures() -> Iterator[tuple[Path, bytes]]:
 def _draw(axes: Axes, path: Path) -> None:
     """Draw the contact of a problem."""
     axes.set_axis_off()
-    figures.draw_contact(axes, results(path)[_case(path)])
+    result = results(path)[_case(path)]
+    alone = len(result.contact.zone_names) == 1
+    figures.draw_contact(axes, result, next(iter(figures.close_ups(result, SMALL)), None) if alone else None)
 
 
 def main() -> None:
