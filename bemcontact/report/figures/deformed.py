@@ -8,7 +8,6 @@ from matplotlib.patches import PathPatch
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
 from bemcontact.bem.mesh import BoundaryState, element_curves
-from bemcontact.contact.stress import PointKind
 from bemcontact.options import StressMeasure
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.contact import OVERHANG, body_extent, outline_of
@@ -51,17 +50,14 @@ def draw_deformed(axes: Axes, result: Result, stress: StressMeasure | None = Non
     covered += [np.clip(ground, low - OVERHANG * size, high + OVERHANG * size) for ground in grounds]
     unit = units_of(result.contact).length
     frame_plan(axes, np.concatenate(covered), unit)
+    marked = "thick: in contact; dashed: undeformed"
     if stress is not None:
-        fill_with_stress(axes, result, stress, factor)
+        marked = fill_with_stress(axes, result, stress, factor)
     known = (bar.value for bar in result.accuracy.bars if bar.quantity == "displacement")  # as the table has it
     most = next(known, None) or float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
     largest = with_unit(f"{most:.3g}", plain(unit))
     scale = "displacements to scale" if factor == 1 else f"displacements and gaps × {factor:g}"
-    marked = "; thick: in contact; dashed: undeformed"
-    if stress is not None:
-        infinite = (result.triangulated.stress.kind == PointKind.SINGULAR).any()
-        marked = f"; {'crosses: infinite stress' if infinite else 'ring: largest stress'}"
-    title = f"deformed shape, {scale}\nlargest displacement {largest}{marked}"
+    title = f"deformed shape, {scale}\nlargest displacement {largest}; {marked}"
     axes.set_title(title, loc="left", fontsize=10)
 
 

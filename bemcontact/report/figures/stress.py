@@ -16,6 +16,8 @@ BESIDE = 0.1
 """Distance from an infinite stress over the size of what is shown within which no value sets the scale."""
 UNSEEN = 0.003
 """Share of the area that is shown on which stress may be beyond the scale."""
+UNIFORM = 1e-6
+"""Relative difference of stresses that is round-off."""
 LEVELS = 10
 """About as many levels of color."""
 COLOURS, BOTH_SIGNS = "viridis", "RdBu_r"
@@ -28,11 +30,12 @@ def fill_with_stress(
     measure: StressMeasure,
     factor: float = 1.0,
     window: Array | None = None,
-) -> None:
+) -> str:
     """Fill the deformed body with contours of a stress; mark the largest and infinite ones.
 
     Displacements are magnified by the factor. The colors are for what is inside the `window`, two corners (2, 2).
     Their scale is for all values but those on a small part of the area, and beside places where stress is infinite.
+    The words that are returned say what is marked.
     """
     body = result.triangulated
     points = body.points + factor * body.displacement
@@ -53,8 +56,9 @@ def fill_with_stress(
         triangles, beyond, levels=levels, cmap=BOTH_SIGNS if measure.signed else COLOURS, zorder=0,
         extend="both" if measure.signed else "max" if beyond.max() > levels[-1] else "neither",
     )  # fmt: skip
-    _mark(axes, points, np.where(shown & ~infinite, np.abs(values), -np.inf), points[infinite & shown])
     _add_bar(axes, drawn, result, measure)
+    finite = shown & ~infinite
+    return _mark(axes, points[finite], np.abs(values[finite]), points[infinite & shown])
 
 
 def _seen(points: Array, triangles: IntArray, sizes: Array) -> float:
@@ -75,16 +79,21 @@ def _beside(points: Array, places: Array, distance: float) -> BoolArray:
     return np.hypot(*(points[:, None] - places).transpose(2, 0, 1)).min(axis=1) < distance
 
 
-def _mark(axes: Axes, points: Array, sizes: Array, infinite: Array) -> None:
-    """Mark infinite stress by crosses; if there is none, the point with the largest stress by a ring."""
+def _mark(axes: Axes, points: Array, sizes: Array, infinite: Array) -> str:
+    """Mark infinite stress by crosses; if there is none, the largest by a ring, unless stress is the same all over."""
+    words = "crosses: infinite stress"
     if not len(infinite):
         at = int(np.argmax(sizes))
+        if np.ptp(sizes) <= UNIFORM * sizes[at]:
+            return "the stress is the same all over"
+        words = "ring: largest stress"
         for color, width, order in (("white", 2.6, 5), (BLACK, 1.2, 6)):
             axes.plot(
                 *points[at], marker="o", markersize=8, markerfacecolor="none", markeredgecolor=color,
                 markeredgewidth=width, zorder=order,
             )  # fmt: skip
     axes.plot(*infinite.T, linestyle="none", marker="x", markersize=7, markeredgewidth=1.8, color=BLACK, zorder=6)
+    return words
 
 
 def _add_bar(axes: Axes, drawn: TriContourSet, result: Result, measure: StressMeasure) -> None:

@@ -57,3 +57,12 @@ def test_the_largest_stress_has_a_ring():
     for ring in rings:
         assert ring == pytest.approx(body.points[at] + 3 * body.displacement[at])
     assert rings
+
+
+def test_no_place_is_marked_where_stress_is_the_same_all_over():
+    """A block in a corner under constant pressures: round-off would choose the place."""
+    result = bemcontact.solve(bemcontact.load(MODELS / "gallery" / "block_in_corner.yaml"))
+    figure = Figure()
+    axes = figure.add_subplot()
+    assert figures.fill_with_stress(axes, result, StressMeasure.VON_MISES) == "the stress is the same all over"
+    assert not axes.lines
