@@ -89,7 +89,7 @@ SLOW = {"cvxpy", "clarabel", "matplotlib", "numba", "meshio", "distributed", "py
 LATE = {
     ("bem.body", "bem.deflected_contours"): "only these need equations, and check starts without",
     ("analysis.result", "analysis.body_stress"): "stress is computed where it is asked for, and solve starts without",
-    ("analysis.result", "analysis.largest_stress"): "likewise",
+    ("analysis.result", "analysis.stress_bars"): "likewise",
     ("analysis.result", "analysis.triangulated_body"): "likewise",
 }
 """(Who imports, what) -> why the import stands where it is used. The command line imports all other rooms so."""

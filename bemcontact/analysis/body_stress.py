@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.adaptivity.wedge_exponents import FREE, Face, contact_face, stress_is_infinite
+from bemcontact.analysis.edge_peak import largest_along
 from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import CORNER, BoundaryState, build
@@ -21,8 +22,6 @@ from bemcontact.serialization import Pair
 
 FLAT = 1e-6
 """Angle of a corner that is none, and jump of shear over the largest traction that is none."""
-PEAK_SAMPLES, PEAK_STEPS = 17, 4
-"""Places on an element among which the largest stress is looked for, and how often between smaller bounds."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,23 +109,20 @@ class BodyStress:
         """The hoop stress of the largest magnitude along an edge, or the equivalent stress; None as in `EdgeStress`."""
         own = self._elements(edge)
         ends = self._infinite(own)
-        infinite: BoolArray = ends[:, 0] | ends[:, 2]
-        number = np.flatnonzero(~infinite)
-        if not len(number):
+
+        def values(at: Array) -> Array:
+            number = np.minimum(at.astype(int), len(own) - 1)
+            hoop, stress = self._on(own[number], 2 * (at - number) - 1)
+            return stress.von_mises if von_mises else hoop
+
+        found = largest_along(values, np.append(ends[:, 0], ends[-1, 2]))
+        if found is None:
             return None
-        n, xi, value = self._largest(own, number, np.linspace(-1, 1, PEAK_SAMPLES), von_mises)
-        beside = n + (int(xi) if abs(xi) == 1 else 0)
-        if 0 <= beside < len(own) and infinite[beside]:
-            return None
-        width = 2 / (PEAK_SAMPLES - 1)
-        for _ in range(PEAK_STEPS):
-            near = np.linspace(max(-1.0, xi - width), min(1.0, xi + width), PEAK_SAMPLES)
-            n, xi, value = self._largest(own, np.array([n]), near, von_mises)
-            width = near[1] - near[0]
-        shapes = reference_element.values(np.array(xi))
+        number = min(int(found[0]), len(own) - 1)
+        shapes = reference_element.values(np.array(2 * (found[0] - number) - 1))
         mesh = self.field.mesh
-        x, y = (shapes @ mesh.nodes[mesh.elements[own[n]]]).tolist()
-        return EdgePeak(value, (x, y), float(shapes @ self._arc(own)[n]))
+        x, y = (shapes @ mesh.nodes[mesh.elements[own[number]]]).tolist()
+        return EdgePeak(found[1], (x, y), float(shapes @ self._arc(own)[number]))
 
     def _elements(self, edge: str) -> IntArray:
         """Elements of an edge in order."""
@@ -157,13 +153,6 @@ class BodyStress:
         return xx * x * x + yy * y * y + 2 * xy * x * y, Stress(
             points=points, components=stress[..., 0].T, zz=zz, kind=kind
         )
-
-    def _largest(self, own: IntArray, number: IntArray, xi: Array, von_mises: bool) -> tuple[int, float, float]:
-        """Number of the element and ξ of the largest value at ξ (s,) of some of the elements, and this value."""
-        hoop, stress = self._on(np.repeat(own[number], len(xi)), np.tile(xi, len(number)))
-        values = stress.von_mises if von_mises else hoop
-        best = int(np.argmax(abs(values)))
-        return int(number[best // len(xi)]), float(xi[best % len(xi)]), float(values[best])
 
 
 class EdgePeak(NamedTuple):

@@ -186,9 +186,7 @@ class Result(Recorded):
         pressure, _ = self.contact_fields()
         assert self.problem is not None
         assert self.boundary is not None
-        known = [item for item in self.accuracy.bars if item.quantity == "intensity"]
-        infinite = [item.at for item in (*self.accuracy.infinite_peaks, *known) if item.at is not None]
-        return BodyStress.of(self.problem, self.boundary, pressure[:, 1] > 0, infinite)
+        return BodyStress.of(self.problem, self.boundary, pressure[:, 1] > 0, self.accuracy.infinite_places)
 
     @one_thread
     def stress(self, points: ArrayLike) -> Stress:
@@ -241,15 +239,22 @@ class Result(Recorded):
     def largest_stresses(self) -> LargestStresses:
         """Look for the largest stresses: below each contact, inside the body and along its edges.
 
+        Their error bars are estimated from a solution on another mesh, if those of the pressures are known.
+
         Raises
         ------
         ProblemError
             The result is that of a condensed problem, which has no body.
         """
-        from bemcontact.analysis.largest_stress import largest_stresses
+        return self._largest_stresses
+
+    @cached_property
+    def _largest_stresses(self) -> LargestStresses:
+        """`largest_stresses`, which take as long as a solution."""
+        from bemcontact.analysis.stress_bars import largest_with_bars
 
         pressure, _ = self.contact_fields()
-        return largest_stresses(self._body_stress, self.triangulated, pressure[:, 1] > 0)
+        return largest_with_bars(self._body_stress, self.triangulated, pressure[:, 1] > 0, self.accuracy)
 
     @cached_property
     def triangulated(self) -> TriangulatedBody:

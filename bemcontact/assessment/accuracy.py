@@ -131,6 +131,12 @@ class Accuracy(Leaf):
         """The entries of peaks that are infinite."""
         return tuple(item for item in self.bars if item.quantity == "peak" and item.value is None)
 
+    @property
+    def infinite_places(self) -> list[Pair]:
+        """Places where pressure is known to be infinite."""
+        known = (*self.infinite_peaks, *(item for item in self.bars if item.quantity == "intensity"))
+        return [item.at for item in known if item.at is not None]
+
     def bar_of(self, quantity: Quantity, of: str | None = None, interval: int = 0) -> ErrorBar:
         """Find the error bar of a quantity: ``bar_of("peak", "foot")``, ``bar_of("length", "foot", 1)``.
 

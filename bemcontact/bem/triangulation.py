@@ -73,7 +73,8 @@ def triangulation(mesh: Mesh) -> Triangulation:
     """Fill the body with triangles that are as small as the elements at the boundary, and grow away from it.
 
     The sides on the boundary are pieces of elements. A piece that is no side of a Delaunay triangle is halved until it
-    is, as in Ruppert's refinement (J. Algorithms 18 (1995) 548-585).
+    is, as in Ruppert's refinement (J. Algorithms 18 (1995) 548-585). Points that are as close as round-off to another
+    one are in no triangle, and their pieces are not halved.
     """
     m = len(mesh.elements)
     follows = np.empty(m, int)
@@ -86,13 +87,13 @@ def triangulation(mesh: Mesh) -> Triangulation:
         ends=np.tile(np.column_stack([ends[:-1], ends[1:]]), (m, 1)),
         after=np.column_stack([number[:, 1:], PIECES * follows]).ravel(),
     )
-    rim, points, triangles = _delaunay(pieces)
+    rim, points, triangles, merged = _delaunay(pieces)
     for _ in range(ROUNDS):
-        missing = ~_are_sides(triangles, pieces.after)
+        missing = ~(_are_sides(triangles, pieces.after) | merged | merged[pieces.after])
         if not missing.any():
             break
         pieces = pieces.halved(missing)
-        rim, points, triangles = _delaunay(pieces)
+        rim, points, triangles, merged = _delaunay(pieces)
     corners = points[triangles]
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     doubled = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
@@ -102,11 +103,12 @@ def triangulation(mesh: Mesh) -> Triangulation:
     return Triangulation(points=points, triangles=triangles[kept], element=pieces.element, xi=pieces.ends[:, 0])
 
 
-def _delaunay(pieces: _Pieces) -> tuple[Array, Array, IntArray]:
-    """Points (b, 2) of the pieces, all points (k, 2), and the Delaunay triangles (t, 3) of these."""
+def _delaunay(pieces: _Pieces) -> tuple[Array, Array, IntArray, BoolArray]:
+    """Points (b, 2) of the pieces, all points (k, 2), Delaunay triangles (t, 3), and which (b,) are in none."""
     rim = pieces.points
     points = np.vstack([rim, _inner_points(pieces, rim)])
-    return rim, points, Delaunay(points - pieces.mesh.center).simplices.astype(int)
+    triangles = Delaunay(points - pieces.mesh.center).simplices.astype(int)
+    return rim, points, triangles, ~np.isin(np.arange(len(rim)), triangles)
 
 
 def points_on(mesh: Mesh, element: IntArray, xi: Array) -> Array:

@@ -44,7 +44,7 @@ def solve(
     accuracy is met.
 
     FOLDER gets result.html (one page with pictures, to read and to send on), zones.csv, points.csv, stress.csv (along
-    the edges), result.json, figures/ and spec.yaml; an earlier result there is replaced.
+    the edges), largest_stresses.csv, result.json, figures/ and spec.yaml; an earlier result there is replaced.
 
     If a spec has load cases, all of them and all combinations are solved; --case selects one.
 

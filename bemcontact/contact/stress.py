@@ -149,6 +149,8 @@ class StressPeak(WithHints):
     """Distance from the contact edges of the zone, or from the boundary [L]."""
     edge: str | None = None
     """Name of the edge on which it is; None inside."""
+    bar: float | None = None
+    """Estimated error, relative to the value; None if it is not known."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

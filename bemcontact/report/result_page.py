@@ -118,11 +118,11 @@ def _stresses(result: Result, units: Units) -> Iterator[tuple[str, str, str]]:
     for zone, peak in largest.shear.items():
         if peak is not None:
             depth = with_unit(number(peak.depth), units.length)
-            yield f"shear below {zone}", _stress(peak.value, units), f"{_at(peak, units, size)}, {depth} deep"
+            yield f"shear below {zone}", _stress(peak, units), f"{_at(peak, units, size)}, {depth} deep"
     if largest.inside is not None:
-        yield "von Mises, inside", _stress(largest.inside.value, units), _at(largest.inside, units, size)
+        yield "von Mises, inside", _stress(largest.inside, units), _at(largest.inside, units, size)
     if (peak := largest.boundary) is not None:
-        yield "von Mises, on the boundary", _stress(peak.value, units), f"{_at(peak, units, size)} on {peak.edge}"
+        yield "von Mises, on the boundary", _stress(peak, units), f"{_at(peak, units, size)} on {peak.edge}"
     if len(largest.singular):
         places = [vector((x, y), scale=size) for x, y in largest.singular[:MOST_PLACES].tolist()]
         more = len(largest.singular) - len(places)
@@ -130,9 +130,11 @@ def _stresses(result: Result, units: Units) -> Iterator[tuple[str, str, str]]:
         yield "von Mises, at corners and edges", "infinite", f"at {listed}: the values above are those elsewhere"
 
 
-def _stress(value: float, units: Units) -> str:
-    """Write a stress; its error is not estimated."""
-    return with_unit(number(value, 4), units.stress)
+def _stress(peak: StressPeak, units: Units) -> str:
+    """Write a largest stress with its error bar, if it is known."""
+    if peak.bar is None:
+        return f"{with_unit(number(peak.value, 3), units.stress)}, error not known"
+    return with_unit(with_bar(peak.value, peak.bar), units.stress)
 
 
 def _at(peak: StressPeak, units: Units, size: float) -> str:

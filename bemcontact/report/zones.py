@@ -32,6 +32,8 @@ POINT_COLUMNS = ("case", "zone", "x", "y", "normal_x", "normal_y", "arc", "press
 """Columns of points.csv."""
 STRESS_COLUMNS = ("case", "edge", "x", "y", "arc", "hoop", "pressure", "shear", "von_mises")
 """Columns of stress.csv."""
+LARGEST_COLUMNS = ("case", "stress", "of", "value", "error", "x", "y", "depth", "edge")
+"""Columns of largest_stresses.csv."""
 
 
 def by_case(results: Result | CaseResults) -> dict[str, Result]:
@@ -168,9 +170,32 @@ def _stress_lines(case: str, result: Result) -> Iterator[list[Any]]:
             yield [case, edge, *point, *("" if np.isnan(number) else number for number in numbers)]
 
 
+def largest_stresses_csv(results: Result | CaseResults) -> str:
+    """Write a line for each largest stress of each load case, and for each place where stress is infinite.
+
+    The error is absolute; empty where it is not known. Where stress is infinite there is no value.
+    """
+    lines = (_largest_lines(case, result) for case, result in by_case(results).items())
+    return _written(LARGEST_COLUMNS, chain.from_iterable(lines))
+
+
+def _largest_lines(case: str, result: Result) -> Iterator[list[Any]]:
+    """The lines of a result in `largest_stresses_csv`."""
+    largest = result.largest_stresses()
+    peaks = [("max_shear", zone, peak) for zone, peak in largest.shear.items()]
+    peaks += [("von_mises", "inside", largest.inside), ("von_mises", "boundary", largest.boundary)]
+    for stress, of, peak in peaks:
+        if peak is not None:
+            error = "" if peak.bar is None else peak.bar * peak.value
+            yield [case, stress, of, peak.value, error, *peak.point, peak.depth, peak.edge or ""]
+    for x, y in largest.singular.tolist():
+        yield [case, "von_mises", "infinite", "", "", x, y, "", ""]
+
+
 def tables_of(results: Result | CaseResults) -> Mapping[str, str]:
     """All tables as CSV, by the names of their files; of a condensed problem there is none of stress."""
     tables = {"zones.csv": zones_csv(results), "points.csv": points_csv(results)}
     if all(result.boundary is not None for result in by_case(results).values()):
         tables["stress.csv"] = stress_csv(results)
+        tables["largest_stresses.csv"] = largest_stresses_csv(results)
     return tables

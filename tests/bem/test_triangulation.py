@@ -58,3 +58,12 @@ def test_triangles_are_as_small_as_the_elements_beside_them():
     below = (np.abs(middles[:, 0] - mesh.center[0]) < 0.3) & (middles[:, 1] - mesh.nodes[:, 1].min() < 0.02)
     assert below.any()
     assert np.hypot(*np.moveaxis(sides[below], 2, 0)).max() < 2 * 0.025
+
+
+def test_points_as_close_as_round_off():
+    """Element ends that Delaunay's algorithm cannot tell apart are left out: no piece is halved again and again."""
+    ends = np.append(0.0, np.geomspace(1e-9, 1.0, 25))
+    filled = triangulation(mesh_of(rectangle(10.0, 2.0, ends, even(2))))
+    assert len(filled.points) < 3000
+    first, second = (filled.points[filled.triangles[:, i]] - filled.points[filled.triangles[:, 0]] for i in (1, 2))
+    assert (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]).sum() / 2 == pytest.approx(20, rel=1e-9)

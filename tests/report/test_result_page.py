@@ -73,7 +73,7 @@ def test_proved_estimated_and_not_looked_at_are_apart():
 def test_stress_that_is_infinite_is_told_before_its_picture_is_believed():
     text = read(render(punched(), {}, None)).text
     assert together("von Mises, at corners and edges infinite at (2, 0)") in together(text)
-    assert "Their errors are not estimated" in text
+    assert "error bar, from the stress on another mesh" in text
     assert 'id="stress"' not in render(condensed(), {}, None)
 
 

@@ -70,7 +70,7 @@ def test_stress_along_edges_has_the_pressure_of_the_contact():
 
 def test_a_condensed_problem_has_no_stress():
     assert {*tables_of(condensed())} == {"zones.csv", "points.csv"}
-    assert {*tables_of(cases())} == {"zones.csv", "points.csv", "stress.csv"}
+    assert {*tables_of(cases())} == {"zones.csv", "points.csv", "stress.csv", "largest_stresses.csv"}
 
 
 def test_rows_say_in_words_what_a_zone_does():
@@ -83,3 +83,18 @@ def test_rows_say_in_words_what_a_zone_does():
     (row,) = zone_rows(punched().to_dict(), units)
     assert row["peak"] == "infinite"
     assert row["intensity"].startswith("K = ")
+
+
+def test_largest_stresses_as_csv():
+    """Values, absolute errors and places are those of the result; where stress is infinite there is a place alone."""
+    largest = rolled().largest_stresses()
+    lines = {(line["stress"], line["of"]): line for line in read(tables_of(rolled())["largest_stresses.csv"])}
+    for key, peak in ((("max_shear", "foot"), largest.shear["foot"]), (("von_mises", "boundary"), largest.boundary)):
+        assert peak is not None
+        error = "" if peak.bar is None else f"{peak.bar * peak.value}"
+        assert lines[key]["value"] == f"{peak.value}"
+        assert lines[key]["error"] == error
+        assert (float(lines[key]["x"]), float(lines[key]["y"])) == peak.point
+    infinite = [line for line in read(tables_of(punched())["largest_stresses.csv"]) if line["of"] == "infinite"]
+    assert len(infinite) == len(punched().largest_stresses().singular) > 0
+    assert {line["value"] for line in infinite} == {""}
