@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator, ScalarFormatter
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -127,6 +127,7 @@ def frame_plan(axes: Axes, drawn: Array, unit: str) -> None:
     axes.set_aspect("equal")
     for axis, extent in zip((axes.xaxis, axes.yaxis), high - low, strict=True):
         axis.set_major_locator(round_ticks(max(2, round(6 * min(1.0, 1.5 * extent / longest)))))
+        axis.set_major_formatter(ScalarFormatter(useOffset=False))
     axes.set_xlabel(labeled("x", unit))
     axes.set_ylabel(labeled("y", unit))
     axes.spines[["top", "right"]].set_visible(False)

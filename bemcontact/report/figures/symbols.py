@@ -124,7 +124,7 @@ def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence
         anchors, centers = _places(to_page.transform(name.anchors), name.directions, size)
         near_side = ~_beyond(walls, anchors, centers)
         both = near_side & _holds(frame, centers, size)
-        for admissible in (both, near_side):
+        for admissible in (both & ~_crossed(walls, centers, size), both, near_side):
             if admissible.any():
                 centers = centers[admissible]
                 break
@@ -181,17 +181,27 @@ def _grid(frame: Bbox, size: tuple[float, float]) -> Array:
 
 
 def _places(anchors: Array, directions: Array, size: tuple[float, float]) -> tuple[Array, Array]:
-    """Anchors (c, 2), and centers (c, 2) for a text of this size beside them, near ones first."""
-    reach = np.abs(directions) @ np.array(size) / 2
-    distances = (8.0, 16.0, 30.0, 50.0, 75.0)
-    centers = [anchors + (reach + distance)[:, None] * directions for distance in distances]
-    return np.tile(anchors, (len(distances), 1)), np.concatenate(centers)
+    """Anchors (c, 2), and centers (c, 2) for a text of this size beside them: near ones first, then those aside."""
+    across = directions[:, ::-1] * (-1, 1)
+    reach, aside = (np.abs(way) @ np.array(size) / 2 for way in (directions, across))
+    centers = [
+        anchors + (reach + distance)[:, None] * directions + (side * (aside + 8.0))[:, None] * across
+        for side in (0, -1, 1)
+        for distance in (8.0, 16.0, 30.0, 50.0, 75.0)
+    ]
+    return np.tile(anchors, (len(centers), 1)), np.concatenate(centers)
 
 
 def _holds(frame: Bbox, centers: Array, size: tuple[float, float]) -> BoolArray:
     """Whether each text lies inside a frame."""
     half = np.array(size) / 2
     return np.all((centers - half > frame.min) & (centers + half < frame.max), axis=1)
+
+
+def _crossed(walls: Sequence[Path], centers: Array, size: tuple[float, float]) -> BoolArray:
+    """Whether a wall goes through a text of this size at each center (c, 2)."""
+    boxes = [Bbox(np.reshape(centered(center, size), (2, 2))) for center in centers]
+    return np.array([any(wall.intersects_bbox(box, filled=False) for wall in walls) for box in boxes], bool)
 
 
 def _beyond(walls: Sequence[Path], anchors: Array, centers: Array) -> BoolArray:
