@@ -42,7 +42,7 @@ def typical_scales(
     _ensure_computable("the compliance", norm)
     pressure = float(np.abs(balancing_pressure).max(initial=0.0))
     largest = float(np.maximum(terms, np.abs(offset)).max(initial=0.0))
-    displacement = max(norm * pressure, _interference(offset, terms, rigid_motions)) or largest or 1.0
+    displacement = _larger(norm * pressure, offset, terms, rigid_motions) or largest or 1.0
     scales = ContactScales(displacement, displacement / norm if norm > 0 else pressure or 1.0)
     _ensure_computable("the displacement", scales.displacement)
     _ensure_computable("the pressure", scales.pressure)
@@ -57,6 +57,15 @@ def _ensure_computable(what: str, size: float) -> None:
             f"{what} of this contact problem is about {size:.3g}, which is too {much} to compute with; choose other "
             "units of length and force"
         )
+
+
+def _larger(displacement: float, offset: Array, terms: Array, rigid_motions: Array) -> float:
+    """The larger of a displacement [L] and the interference, without a program where a motion shows which it is."""
+    if rigid_motions.shape[1] > 1 and displacement > 0:
+        fitted = offset - rigid_motions @ np.linalg.lstsq(rigid_motions, offset)[0]
+        if min(-offset.min(initial=0.0), -fitted.min(initial=0.0)) <= displacement:
+            return displacement
+    return max(displacement, _interference(offset, terms, rigid_motions))
 
 
 def _interference(offset: Array, terms: Array, rigid_motions: Array) -> float:
