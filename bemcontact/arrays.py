@@ -197,8 +197,8 @@ def _halves(numbers: Array) -> tuple[Array, Array]:
 def nonnegative_residual(columns: Array, right: Array) -> Array:
     """The residual A x - b (k,) of the x >= 0 (n,) with the least |A x - b|, for columns A (k, n) and b (k,).
 
-    It is zero, or no column leads further down: Aᵀr >= 0 and bᵀr = -rᵀr, up to a cosine of `NO_ANGLE`. The method is that
-    of `scipy.optimize.nnls`, which takes longer to import than a small problem to solve.
+    Where it is not zero, no column leads further down: Aᵀr >= 0 and bᵀr = -rᵀr, up to a cosine of `NO_ANGLE`. Not
+    `scipy.optimize.nnls`: its import takes longer than a check, and at ties it may report a residual that is too small.
 
     References
     ----------
@@ -225,7 +225,7 @@ def nonnegative_residual(columns: Array, right: Array) -> Array:
 def _fitted(unit: Array, right: Array, used: IntArray, x: Array) -> tuple[IntArray, Array]:
     """The columns in use and their x > 0, for the least residual; columns are dropped on the way from x >= 0."""
     while used.size:
-        best = np.linalg.lstsq(unit[:, used], right)[0]
+        best = np.asarray(np.linalg.lstsq(unit[:, used], right)[0], float)
         falling = best <= 0.0
         if not falling.any():
             return used, best

@@ -28,7 +28,7 @@ def carried(rng, k, n):
 @pytest.mark.parametrize("kind", [of_whole_numbers, of_any_size, nearly_parallel, carried])
 @pytest.mark.parametrize("seed", range(40))
 def test_residual_is_the_least(kind, seed: int):
-    """r + b is A x with x >= 0, by a linear program; Aᵀr >= 0 and rᵀA x = 0, so that no other x is better."""
+    """The vector r + b is A x with x >= 0, by a linear program; Aᵀr >= 0 and rᵀA x = 0, so no x is better."""
     rng = np.random.default_rng(seed)
     columns, right = kind(rng, int(rng.integers(1, 8)), int(rng.integers(0, 40)))
     residual = nonnegative_residual(columns, right)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from bemcontact.arrays import Array, BoolArray, real_array
+from bemcontact.arrays import Array, BoolArray, nonnegative_residual, real_array
 from bemcontact.errors import ProblemError, SingularSystemError
 
 INTERFERENCE = 1e-6
@@ -71,7 +71,8 @@ def _larger(displacement: float, offset: Array, terms: Array, rigid_motions: Arr
 def _interference(offset: Array, terms: Array, rigid_motions: Array) -> float:
     """Least s >= 0 [L] with q + R a >= -s for some a, by a linear program; zero where it is round-off.
 
-    Along one motion it is decided by one point, or by two that the motion opens and closes.
+    Along one motion it is decided by one point, or by two that the motion opens and closes. Nothing is gained by moving
+    where the rows of R of the points with the least gap balance each other.
     """
     n, k = rigid_motions.shape
     q = np.where(np.abs(offset) > ROUND_OFF * terms, offset, 0.0)
@@ -84,6 +85,9 @@ def _interference(offset: Array, terms: Array, rigid_motions: Array) -> float:
         least = min((both / np.add.outer(1 / r[opens], 1 / r[closes])).min(initial=0.0), q[r == 0].min(initial=0.0))
         return -float(least) if -least > INTERFERENCE * widest else 0.0
     columns = np.column_stack([rigid_motions, np.ones(n)])
+    worst = q <= (1.0 - ROUND_OFF) * q.min()
+    if not (np.abs(nonnegative_residual(columns[worst].T, np.eye(k + 1)[k])) > ROUND_OFF).any():
+        return -float(q.min())
     cost, bounds = np.append(np.zeros(k), 1.0), [(None, None)] * k + [(0, None)]
     optimum = scipy.optimize.linprog(cost, A_ub=-columns, b_ub=q / widest, bounds=bounds)
     return widest * optimum.fun if optimum.success and optimum.fun > INTERFERENCE else 0.0

@@ -4,9 +4,8 @@ import numpy as np
 
 from bemcontact.arrays import Array
 
-ROUND_OFF = float(np.finfo(float).eps)
-SERIES = 1e-3
-"""Largest difference of the arguments over their mean from which the series of Carlson has all digits."""
+SERIES = 3e-3
+"""Difference of arguments over their mean up to which Carlson's series have all digits: errors are its sixth power."""
 
 
 def second_kind(angle: Array, ratio: float) -> Array:
@@ -32,14 +31,15 @@ def second_kind(angle: Array, ratio: float) -> Array:
 def _symmetric(x: Array, y: Array) -> tuple[Array, Array]:
     """R_F(x, y, 1) and R_D(x, 1, y), by duplication until the arguments are near each other."""
     z, total, power = np.ones_like(x), np.zeros_like(x), 1.0
-    while True:
-        mean, weighted = (x + y + z) / 3.0, (x + z + 3.0 * y) / 5.0
-        if max(np.max(np.abs(item - weighted) / weighted) for item in (x, y, z)) < SERIES:
-            break
-        root = np.sqrt(x), np.sqrt(y), np.sqrt(z)
-        shift = root[0] * root[1] + root[1] * root[2] + root[2] * root[0]
-        total += power / (root[1] * (y + shift))
+    mean = (x + y + z) / 3.0
+    # the arguments are between 0 and 1, and each duplication divides their differences by four
+    while power > SERIES * float(np.min(mean)):
+        root, other, last = np.sqrt(x), np.sqrt(y), np.sqrt(z)
+        shift = root * (other + last) + other * last
+        total += power / (other * (y + shift))
         x, y, z, power = (x + shift) / 4.0, (y + shift) / 4.0, (z + shift) / 4.0, power / 4.0
+        mean = (x + y + z) / 3.0
+    weighted = (x + z + 3.0 * y) / 5.0
     X, Y = 1.0 - x / mean, 1.0 - y / mean
     e2, e3 = -(X * X + X * Y + Y * Y), -X * Y * (X + Y)
     first = (1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0) / np.sqrt(mean)
