@@ -6,7 +6,6 @@ from math import fsum
 from typing import Any
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from bemcontact.checks.arguments import LARGEST_NUMBER, is_real, shown
@@ -19,6 +18,8 @@ ComplexArray = NDArray[np.complex128]
 
 BLOCK = 32
 """Rows of which products are held at a time, so that they stay in the cache."""
+NO_ANGLE = 1e-12
+"""Cosine of the angle to a residual up to which a column does not make it smaller."""
 
 Dimensions = tuple[int | None, ...]
 """Shape of an array that is needed; None is any length."""
@@ -193,19 +194,47 @@ def _halves(numbers: Array) -> tuple[Array, Array]:
     return upper, numbers - upper
 
 
-def nonnegative_fit(columns: Array, right: Array) -> tuple[Array, float]:
-    """The x >= 0 (n,) with the least |A x - b|, for columns A (k, n) and b (k,), and that distance.
+def nonnegative_residual(columns: Array, right: Array) -> Array:
+    """The residual A x - b (k,) of the x >= 0 (n,) with the least |A x - b|, for columns A (k, n) and b (k,).
 
-    With one row, the largest entry of the sign of b carries it alone, or none does: then no solver is imported.
+    Where it is not zero, no column leads further down: Aᵀr >= 0 and bᵀr = -rᵀr, up to a cosine of `NO_ANGLE`. Not
+    `scipy.optimize.nnls`: its import takes longer than a check, and at ties it may report a residual that is too small.
+
+    References
+    ----------
+    C. L. Lawson and R. J. Hanson, "Solving Least Squares Problems" (1974), chapter 23.
     """
-    if len(right) > 1 or not columns.size:
-        solution, distance = scipy.optimize.nnls(columns, right)
-        return solution, float(distance)
-    solution, towards = np.zeros(columns.shape[1]), np.sign(right) * columns[0]
-    largest = int(towards.argmax())
-    if towards[largest] > 0.0:
-        solution[largest] = abs(right[0]) / towards[largest]
-    return solution, float(abs(columns[0] @ solution - right[0]))
+    length = np.linalg.norm(columns, axis=0)
+    unit = columns[:, length > 0.0] / length[length > 0.0]
+    used, x, residual = np.zeros(0, int), np.zeros(0), -right
+    while unit.size:
+        pull = -(residual @ unit)
+        pull[used] = 0.0
+        entering = int(pull.argmax())
+        size = float(np.linalg.norm(residual))
+        if pull[entering] <= NO_ANGLE * size:
+            break
+        used, x = _fitted(unit, right, np.append(used, entering), np.append(x, 0.0))
+        left = unit[:, used] @ x - right
+        if not np.linalg.norm(left) < size:  # only rounding is left
+            break
+        residual = left
+    return residual
+
+
+def _fitted(unit: Array, right: Array, used: IntArray, x: Array) -> tuple[IntArray, Array]:
+    """The columns in use and their x > 0, for the least residual; columns are dropped on the way from x >= 0."""
+    while used.size:
+        best = np.asarray(np.linalg.lstsq(unit[:, used], right)[0], float)
+        falling = best <= 0.0
+        if not falling.any():
+            return used, best
+        steps = np.full(len(x), np.inf)
+        steps[falling] = x[falling] / np.where(x == best, 1.0, x - best)[falling]
+        x = x + steps.min() * (best - x)
+        kept = (x > 0.0) & (steps > steps.min())
+        used, x = used[kept], x[kept]
+    return used, x
 
 
 def powers_of_two(sizes: Array) -> Array:

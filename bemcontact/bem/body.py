@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import scipy
 
-from bemcontact.arrays import Array, nonnegative_fit
+from bemcontact.arrays import Array, nonnegative_residual
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
 from bemcontact.bem.mesh import Mesh, build
@@ -149,17 +148,20 @@ class Body:
     def idle_motion(self) -> str | None:
         """A motion that opens gaps and closes none, and in which the loads do no work; None if there is none.
 
-        Its amplitude is not determined. A linear program finds it.
+        Its amplitude is not determined. Among the motions a with R a >= 0 in which the loads do no work, it is the one
+        nearest to Rᵀ1, which opens all gaps: a residual of nonnegative least squares (Moreau).
         """
         R, load = self.relative_load
         if not load.size or (load.size == 1 and load.any()):
             return None
-        optimum = scipy.optimize.linprog(
-            -R.sum(axis=0), A_ub=-R, b_ub=np.zeros(len(R)), A_eq=load[None, :], b_eq=[0.0], bounds=(-1.0, 1.0),
-            options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
-        )  # fmt: skip
-        idle = optimum.success and (R @ optimum.x).max() > IDLE
-        return self.seen.combined(optimum.x[:, None]).describe()[0] if idle else None
+        workless = np.linalg.svd(load[None, :])[2][1:].T if load.any() else np.eye(load.size)
+        rates = R @ workless
+        rates[abs(rates) <= UNSEEN] = 0.0
+        part = nonnegative_residual(rates.T, -rates.sum(axis=0))
+        size = np.linalg.norm(part)
+        motion = workless @ part / max(size, IDLE)
+        idle = size > IDLE and (R @ motion).max() > IDLE * abs(motion).max()
+        return self.seen.combined(motion[:, None]).describe()[0] if idle else None
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -293,9 +295,9 @@ def _ensure_room_where_held(body: Body) -> None:
 def _check_support(body: Body) -> None:
     """Refuse loads that no pressure p >= 0 can balance, and a body that no load presses on."""
     R, load = body.relative_load
-    forces, residual = nonnegative_fit(R.T, -load) if load.any() else (np.zeros(len(R)), 0.0)
-    if residual > BALANCED:
-        raise ProblemError(_pull(body, body.seen.combined((R.T @ forces + load)[:, None])))
+    pull = nonnegative_residual(R.T, -load)
+    if np.linalg.norm(pull) > BALANCED:
+        raise ProblemError(_pull(body, body.seen.combined(pull[:, None])))
     if not load.any() and body.idle_motion is not None:
         raise ProblemError(
             f"contact holds {_against(body.seen)}, but no load presses it onto its support, so that its position "

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from bemcontact.arrays import Array, BoolArray, real_array
+from bemcontact.arrays import Array, BoolArray, nonnegative_residual, real_array
 from bemcontact.errors import ProblemError, SingularSystemError
 
 INTERFERENCE = 1e-6
@@ -42,7 +42,7 @@ def typical_scales(
     _ensure_computable("the compliance", norm)
     pressure = float(np.abs(balancing_pressure).max(initial=0.0))
     largest = float(np.maximum(terms, np.abs(offset)).max(initial=0.0))
-    displacement = max(norm * pressure, _interference(offset, terms, rigid_motions)) or largest or 1.0
+    displacement = _larger(norm * pressure, offset, terms, rigid_motions) or largest or 1.0
     scales = ContactScales(displacement, displacement / norm if norm > 0 else pressure or 1.0)
     _ensure_computable("the displacement", scales.displacement)
     _ensure_computable("the pressure", scales.pressure)
@@ -59,10 +59,20 @@ def _ensure_computable(what: str, size: float) -> None:
         )
 
 
+def _larger(displacement: float, offset: Array, terms: Array, rigid_motions: Array) -> float:
+    """The larger of a displacement [L] and the interference, without a program where a motion shows which it is."""
+    if rigid_motions.shape[1] > 1 and displacement > 0:
+        fitted = offset - rigid_motions @ np.linalg.lstsq(rigid_motions, offset)[0]
+        if min(-offset.min(initial=0.0), -fitted.min(initial=0.0)) <= displacement:
+            return displacement
+    return max(displacement, _interference(offset, terms, rigid_motions))
+
+
 def _interference(offset: Array, terms: Array, rigid_motions: Array) -> float:
     """Least s >= 0 [L] with q + R a >= -s for some a, by a linear program; zero where it is round-off.
 
-    Along one motion it is decided by one point, or by two that the motion opens and closes.
+    Along one motion it is decided by one point, or by two that the motion opens and closes. Nothing is gained by moving
+    where the rows of R of the points with the least gap balance each other.
     """
     n, k = rigid_motions.shape
     q = np.where(np.abs(offset) > ROUND_OFF * terms, offset, 0.0)
@@ -75,6 +85,9 @@ def _interference(offset: Array, terms: Array, rigid_motions: Array) -> float:
         least = min((both / np.add.outer(1 / r[opens], 1 / r[closes])).min(initial=0.0), q[r == 0].min(initial=0.0))
         return -float(least) if -least > INTERFERENCE * widest else 0.0
     columns = np.column_stack([rigid_motions, np.ones(n)])
+    worst = q <= (1.0 - ROUND_OFF) * q.min()
+    if not (np.abs(nonnegative_residual(columns[worst].T, np.eye(k + 1)[k])) > ROUND_OFF).any():
+        return -float(q.min())
     cost, bounds = np.append(np.zeros(k), 1.0), [(None, None)] * k + [(0, None)]
     optimum = scipy.optimize.linprog(cost, A_ub=-columns, b_ub=q / widest, bounds=bounds)
     return widest * optimum.fun if optimum.success and optimum.fun > INTERFERENCE else 0.0

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import qr
 
-from bemcontact.arrays import Array, BoolArray, IntArray, nonnegative_fit
+from bemcontact.arrays import Array, BoolArray, IntArray, nonnegative_residual
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual, resting_points
@@ -85,7 +85,7 @@ def loose_load(scaled: ScaledContact) -> Array:
     r·load = r·r > 0 (Farkas).
     """
     ell, load = scaled.equilibrium, scaled.motion_load
-    return ell.T @ nonnegative_fit(ell.T, -load)[0] + load if load.size else load
+    return nonnegative_residual(ell.T, -load) if load.size else load
 
 
 def escape_note(contact: CondensedContact) -> str | None:

@@ -8,9 +8,9 @@ from math import atan2, cos, degrees, fsum, hypot, log, pi, radians, sin
 from typing import Protocol
 
 import numpy as np
-import scipy
 
 from bemcontact.arrays import Array
+from bemcontact.problem.elliptic import second_kind
 
 Pair = tuple[float, float]
 
@@ -163,11 +163,9 @@ class EllipticArc:
         return np.array(self.center) + np.column_stack([c * x - s * y, s * x + c * y])
 
     def _arc_length(self, t: Array) -> Array:
-        """Arc length from a fixed point to eccentric angle t; the parameter of the elliptic integral is in [0, 1)."""
+        """Arc length from a fixed point to eccentric angle t."""
         a, b = self.semi_axes
-        if a > b:
-            return a * scipy.special.ellipeinc(t - pi / 2, 1 - (b / a) ** 2)
-        return b * scipy.special.ellipeinc(t, 1 - (a / b) ** 2)
+        return a * second_kind(t - pi / 2, b / a) if a > b else b * second_kind(t, a / b)
 
     def _speed(self, t: Array) -> Array:
         return np.hypot(self.semi_axes[0] * np.sin(t), self.semi_axes[1] * np.cos(t))
@@ -178,15 +176,15 @@ class EllipticArc:
         low, high = np.full(len(fractions), ends.min()), np.full(len(fractions), ends.max())
         first, last = self._arc_length(ends)
         wanted = first + fractions * (last - first)
+        round_off = 4 * np.finfo(float).eps * max(abs(first), abs(last))
         t = self.start_angle + fractions * self.sweep
         for _ in range(60):
             excess = self._arc_length(t) - wanted
+            if np.all(np.abs(excess) <= round_off):
+                break
             low, high = np.where(excess < 0, t, low), np.where(excess > 0, t, high)
             step = t - excess / self._speed(t)
-            t_next = np.where((step >= low) & (step <= high), step, (low + high) / 2)
-            if np.all(np.abs(t_next - t) <= 4e-16 * (1 + np.abs(t))):
-                break
-            t = t_next
+            t = np.where((step >= low) & (step <= high), step, (low + high) / 2)
         return t
 
 

@@ -59,6 +59,25 @@ def test_check_starts_without_solvers(block: Path, elements: str):
     assert (answer.returncode, answer.stderr) == (0, "[]\n")
 
 
+@pytest.mark.parametrize(
+    ("command", "model"),
+    [
+        ("check", "gallery/roller_in_v_block"),
+        ("check", "gallery/shrink_fit"),
+        ("check", "elliptical_crack_closure"),
+        ("solve", "gallery/block_in_corner"),
+        ("solve", "gallery/shrink_fit"),
+    ],
+)
+def test_bodies_that_are_free_in_several_ways_start_without_programs(command: str, model: str):
+    """Small programs, and arcs of ellipses, need no part of SciPy of their own."""
+    slow = tuple(f"scipy.{name}" for name in ("optimize", "sparse", "special", "interpolate"))
+    code = f"print([m for m in {slow} if m in sys.modules], file=sys.stderr)"
+    path = Path(bemcontact.__file__).parents[1] / "models" / f"{model}.yaml"
+    answer = in_a_process(command, path, code=code)
+    assert (answer.returncode, answer.stderr) == (0, "[]\n")
+
+
 def test_condense_writes_what_solve_reads(block: Path, tmp_path: Path):
     out = tmp_path / "block.npz"
     answer = run("condense", block, "--out", out)

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy
 
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.free_motions import MotionAlgebra, angle_of_round_off
+from bemcontact.contact.free_motions import MotionAlgebra, angle_of_round_off, typical_scales
 from bemcontact.errors import ProblemError, SingularSystemError
 
 
@@ -50,6 +51,27 @@ def test_amplitudes_of_a_motion_are_its_own(motions: MotionAlgebra):
 def test_what_is_no_array_of_the_size_is_refused(method: str, given: object, motions: MotionAlgebra):
     with pytest.raises(ProblemError, match=r"pressure|load|displacement"):
         getattr(motions, method)(given)
+
+
+@pytest.mark.parametrize("pressure", [0.0, 0.3, 3.0])
+@pytest.mark.parametrize("disk", [False, True])
+@pytest.mark.parametrize("seed", range(10))
+def test_scale_is_the_larger_of_load_and_interference(pressure: float, disk: bool, seed: int):
+    """Interference by a linear program in amplitudes and s: least s >= 0 with q + R a + s >= 0.
+
+    Normals of a disk that is pressed into a hole balance each other, so that it is as deep as drawn.
+    """
+    rng, n = np.random.default_rng(seed), 12
+    angle = 2 * np.pi * np.arange(n) / n
+    R = np.column_stack([np.cos(angle), np.sin(angle)]) if disk else rng.standard_normal((n, 1 + seed % 3))
+    q = np.full(n, -0.4) if disk else rng.standard_normal(n) - 0.5
+    k = R.shape[1]
+    program = scipy.optimize.linprog(
+        np.eye(k + 1)[k], A_ub=-np.column_stack([R, np.ones(n)]), b_ub=q, bounds=[*[(None, None)] * k, (0, None)]
+    )
+    scales = typical_scales(np.eye(n), q, np.abs(q), R, np.full(n, pressure))
+    expected = max(pressure, program.fun)
+    assert scales.displacement == pytest.approx(expected if expected > 1e-6 else np.abs(q).max(), rel=1e-6)
 
 
 def test_forces_and_order_of_points():

@@ -1,0 +1,49 @@
+"""The residual of nonnegative least squares, judged by its optimality conditions."""
+
+import numpy as np
+import pytest
+import scipy
+
+from bemcontact.arrays import nonnegative_residual
+
+
+def of_whole_numbers(rng, k, n):
+    return rng.integers(-1, 2, (k, n)).astype(float), rng.integers(-1, 2, k).astype(float)
+
+
+def of_any_size(rng, k, n):
+    return rng.standard_normal((k, n)) * 10.0 ** rng.uniform(-6, 6, n), rng.standard_normal(k)
+
+
+def nearly_parallel(rng, k, n):
+    columns = rng.standard_normal((k, n))
+    return np.hstack([columns, columns * (1 + 1e-13 * rng.standard_normal(columns.shape))]), rng.standard_normal(k)
+
+
+def carried(rng, k, n):
+    columns = rng.standard_normal((k, n))
+    return columns, columns @ np.maximum(rng.standard_normal(n), 0.0)
+
+
+@pytest.mark.parametrize("kind", [of_whole_numbers, of_any_size, nearly_parallel, carried])
+@pytest.mark.parametrize("seed", range(40))
+def test_residual_is_the_least(kind, seed: int):
+    """The vector r + b is A x with x >= 0, by a linear program; Aᵀr >= 0 and rᵀA x = 0, so no x is better."""
+    rng = np.random.default_rng(seed)
+    columns, right = kind(rng, int(rng.integers(1, 8)), int(rng.integers(0, 40)))
+    residual = nonnegative_residual(columns, right)
+    size, length = np.linalg.norm(right), np.linalg.norm(columns, axis=0)
+    assert (columns.T @ residual >= -1e-11 * size * length).all()
+    assert abs(residual @ (residual + right)) <= 1e-13 * size**2
+    unit = columns[:, length > 0] / length[length > 0]
+    if unit.size:
+        assert scipy.optimize.linprog(np.zeros(unit.shape[1]), A_eq=unit, b_eq=residual + right).success
+    else:
+        np.testing.assert_array_equal(residual, -right)
+
+
+def test_ties_are_no_descent():
+    """(1, 1/2, 1/2, 1) is orthogonal to four of the columns and behind the fifth."""
+    columns = np.array([[0, -1, 0, -1, 0], [-1, -1, -1, 1, -1], [-1, 0, 1, 1, -1], [1, -1, 0, 0, 1]], float)
+    residual = nonnegative_residual(columns, np.array([1.0, 0, 1, 1]))
+    np.testing.assert_allclose(residual, [-1, -0.5, -0.5, -1], rtol=1e-15)
