@@ -80,6 +80,8 @@ def freeze_arrays(instance: Any) -> None:
 
 def _as_array(value: Any, what: str) -> NDArray[Any]:
     """The array of NumPy that a value is or can be made into, without masked entries."""
+    if type(value) is np.ndarray:
+        return value
     if _is_masked(value):
         raise ProblemError(f"{what} has masked entries; fill them with numbers, or leave these points out")
     try:

@@ -191,11 +191,11 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     angle is at most a right one: the body and its mirror image in the rigid surface then form no notch (Williams 1952).
     """
     mesh, points, angles = body.mesh, body.points, body.mesh.inner_angles
-    in_zone = np.isin(np.arange(len(mesh.elements)), points.element)
-    ends = np.flatnonzero(in_zone != in_zone[mesh.before])
+    in_zone, ends = points.in_zone, np.zeros(len(mesh.nodes), bool)
+    ends[: len(in_zone)] = in_zone != in_zone[mesh.before]
     beyond = np.where(in_zone, mesh.before, np.arange(len(in_zone)))
     free = np.all(~body.acting.values.traction_unknown[beyond], axis=1)
-    for i in np.flatnonzero(touching & np.isin(points.node, ends)):
+    for i in np.flatnonzero(touching & ends[points.node]):
         node = points.node[i]
         x, y = mesh.nodes[node]
         reached = f"contact reaches the end of the zone '{_zone(body, i)}' at ({x:.5g}, {y:.5g})"
@@ -211,7 +211,7 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
 def long_neighbors(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     """Note where contact reaches the end of a zone and the elements beyond it are much longer."""
     mesh, points = body.mesh, body.points
-    lengths, in_zone = mesh.lengths, np.isin(np.arange(len(mesh.elements)), points.element)
+    lengths, in_zone = mesh.lengths, points.in_zone
     for i in np.flatnonzero(touching & (points.node < len(mesh.elements))):
         after, before = points.node[i], mesh.before[points.node[i]]
         outside, inside = (before, after) if in_zone[after] else (after, before)

@@ -183,7 +183,7 @@ def _observe(system: System, response: Response) -> Array:
     points = system.points
     result = np.zeros((response.columns, len(points)))
     for normal, column in zip(points.normals.T, system.unknowns.displacement[points.node].T, strict=True):
-        free = np.flatnonzero(column >= 0)
+        free = np.flatnonzero(column >= 0) if column.min() < 0 else slice(None)
         result[:, free] += normal[free] * response.rows(column[free]).T
     return result.T
 

@@ -87,6 +87,13 @@ class ContactPoints:
         return len(self.node)
 
     @cached_property
+    def in_zone(self) -> BoolArray:
+        """Whether each element (m,) carries the pressure of a point."""
+        in_zone = np.zeros(len(self.mesh.elements), bool)
+        in_zone[self.element] = True
+        return in_zone
+
+    @cached_property
     def zone_of_share(self) -> IntArray:
         """Number of the zone of each share of a point, an (element, local node) pair: that of its element.
 

@@ -283,14 +283,17 @@ class Influence:
         near = np.flatnonzero(tiers == len(reference_element.ORDERS))
         tiers[near] = -1
         beside = kernels.beside_element(tau[near], kernels.Root(*(part[near] for part in root)))
-        T, U, nodes = np.empty((4, 3, len(tau))), np.empty((3, 3, len(tau))), np.empty((3, 2, len(tau)))
-        nodes[:, 0], nodes[:, 1] = tau.real.T, tau.imag.T
-        at = np.append(on_element, near)
-        T[..., at], U[..., at] = kernels.components(kernels.with_root_split_off(on.and_those(beside)), self.factors)
-        for tier in np.unique(tiers[tiers >= 0]).tolist():
-            at, rule = np.flatnonzero(tiers == tier), self._rules[tier]
-            T[..., at], U[..., at] = kernels.regular(kernels.numerators(nodes[..., at], rule), rule, with_U=True)
-        shape = (len(element), len(base))
+        singular = np.append(on_element, near)
+        order = np.argsort(tiers, kind="stable")  # so that the pairs of a rule follow each other
+        order[: len(singular)] = singular
+        ends = np.searchsorted(tiers[order], np.arange(-1, len(reference_element.ORDERS)), side="right").tolist()
+        nodes = np.ascontiguousarray(tau.view(float).reshape(-1, 3, 2)[order].transpose(1, 2, 0))
+        parts = [kernels.components(kernels.with_root_split_off(on.and_those(beside)), self.factors)]
+        for rule, (first, last) in zip(self._rules, itertools.pairwise(ends), strict=True):
+            if last > first:
+                parts.append(kernels.regular(kernels.numerators(nodes[..., first:last], rule), rule, with_U=True))
+        place, shape = np.argsort(order), (len(element), len(base))
+        T, U = (np.concatenate(part, axis=2).take(place, axis=2) for part in zip(*parts, strict=True))
         T, U = T.reshape(4, 3, *shape), U.reshape(3, 3, *shape)
         self._add_to_rows(block, element, T)
         column = self._column[element]

@@ -223,8 +223,7 @@ def nearest_root(tau: ComplexArray) -> Root:
     """Solve τ(r) = 0 for τ = ζ - z (p, 3) at the nodes, counted from the nearest one, so that no digit is lost."""
     _, c1, c2 = element_coefficients(tau)
     nearest = abs(tau).argmin(axis=1)
-    start = NODES[nearest]
-    at_start = np.take_along_axis(tau, nearest[:, None], axis=1)[:, 0]
+    start, at_start = NODES[nearest], tau[np.arange(len(tau)), nearest]
     slope = c1 + 2 * c2 * start
     root = np.sqrt(slope * slope - 4 * c2 * at_start)
     root = np.where((slope.conj() * root).real < 0, -root, root)

@@ -95,19 +95,13 @@ class Outline:
         return result
 
     @cached_property
-    def _samples(self) -> tuple[BoolArray, Array, Array]:
-        """For each element (m,), whether its samples have been placed yet; their points and normals (m, 17, 2)."""
-        points, inward = np.zeros((2, *self.local.shape, 2))
-        return np.zeros(len(points), bool), points, inward
+    def _samples(self) -> Places:
+        """Places at the samples of all elements."""
+        return self.places(np.arange(len(self.local)), self.local)
 
     def sampled(self, elements: IntArray) -> Places:
         """Places at the samples of elements (k,)."""
-        placed, points, inward = self._samples
-        missing = elements[~placed[elements]]
-        if len(missing):
-            points[missing], inward[missing] = self.places(missing, self.local[missing])
-            placed[missing] = True
-        return Places(points[elements], inward[elements])
+        return Places(*(part[elements] for part in self._samples))
 
     @cached_property
     def sides(self) -> tuple[Array, Array]:

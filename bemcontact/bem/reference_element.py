@@ -62,8 +62,8 @@ def gauss_legendre(order: int) -> tuple[Array, Array]:
 
 def bernstein_parameter(root: ComplexArray) -> Array:
     """ρ >= 1 of the ellipse with foci -1, 1 through each root."""
-    step = np.sqrt(root - 1) * np.sqrt(root + 1)
-    return np.maximum(abs(root + step), abs(root - step))
+    half = np.maximum((abs(root - 1) + abs(root + 1)) / 2, 1.0)  # the larger half-axis, (ρ + 1/ρ) / 2
+    return half + np.sqrt((half - 1) * (half + 1))
 
 
 def tier(rho: Array, smallest: Array = SMALLEST_RHO) -> IntArray:

@@ -248,10 +248,12 @@ class SurfaceGaps:
 
         Linear theory leaves open on which side of the corner they come to lie.
         """
-        places = self.outline.sampled(elements).points
+        places, surface = self.outline.sampled(elements).points, self.surfaces[zone]
+        beside = np.zeros(places.shape[:-1], bool)
+        if not isinstance(surface, Polyline):
+            return beside
         moved = np.hypot(*np.moveaxis(self._displacement[elements] - self.tool_motion(zone, places), 2, 0))
-        beside, surface = np.zeros(moved.shape, bool), self.surfaces[zone]
-        for corner in surface.points if isinstance(surface, Polyline) else ():
+        for corner in surface.points:
             beside |= np.hypot(*np.moveaxis(places - corner, 2, 0)) <= moved
         return beside & (moved <= LITTLE * self.problem.boundary.size)
 
@@ -301,7 +303,7 @@ class SurfaceGaps:
         element or its neighbor is behind it.
         """
         local = self.outline.local[elements]
-        for step in (1, -1):
+        for step in (1, -1) if crosses.any() else ():
             beyond = np.roll(before, -step, axis=1)
             beyond[:, -1 if step > 0 else 0] = np.inf
             for row, column in np.argwhere(crosses & (before > flush) & (beyond <= flush)).tolist():
@@ -325,6 +327,8 @@ class SurfaceGaps:
         """
         size, mesh, paired = self.problem.boundary.size, self.outline.mesh, self.paired[zone]
         inside = before < -FLUSH * size
+        if not inside.any():
+            return np.zeros(len(elements), bool)
         behind = elements[inside.any(axis=1)]
         deep = self._marked(elements[(before < -SNUG * size).any(axis=1)], behind)
         faces = self._marked(elements[(inside & turned).any(axis=1)], behind)

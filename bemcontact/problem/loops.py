@@ -34,8 +34,8 @@ def polygon(loop: Sequence[Edge]) -> Array:
 
 def signed_area(corners: Array) -> float:
     """Area of a polygon (k, 2), positive if it is counterclockwise."""
-    x, y = (corners - corners.mean(axis=0)).T
-    return float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) / 2)
+    offsets = corners - corners.mean(axis=0)
+    return float(cross(offsets[:-1], offsets[1:]).sum() + cross(offsets[-1], offsets[0])) / 2
 
 
 def contains(corners: Array, point: Array) -> bool:

@@ -41,7 +41,7 @@ class Plane(SmoothSurface):
         """Gap and normal at points (k, 2) [L]."""
         normal = np.array(self.unit_normal)
         offset = np.asarray(points, float) - np.array(self.point)
-        return Closest(offset @ normal, np.tile(normal, (len(offset), 1)))
+        return Closest(offset @ normal, np.full_like(offset, normal))
 
 
 class Circle(SmoothSurface):
