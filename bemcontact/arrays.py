@@ -218,6 +218,7 @@ def nonnegative_residual(columns: Array, right: Array) -> Array:
             break
         used, x = _fitted(unit, right, np.append(used, entering), np.append(x, 0.0))
         left = unit[:, used] @ x - right
+        left -= unit[:, used] @ np.linalg.lstsq(unit[:, used], left)[0]  # a small residual keeps its direction
         if not np.linalg.norm(left) < size:  # only rounding is left
             break
         residual = left

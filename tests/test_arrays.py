@@ -20,12 +20,19 @@ def nearly_parallel(rng, k, n):
     return np.hstack([columns, columns * (1 + 1e-13 * rng.standard_normal(columns.shape))]), rng.standard_normal(k)
 
 
+def side_by_side(rng, k, n):
+    """The right side is between two columns: a residual beside one of them is small, and must turn to the other."""
+    columns = rng.standard_normal((k, n + 2))
+    columns[:, 1] = columns[:, 0] + 10.0 ** rng.uniform(-10, -4) * columns[:, 1]
+    return columns, columns[:, :2] @ rng.uniform(0.5, 1.5, 2)
+
+
 def carried(rng, k, n):
     columns = rng.standard_normal((k, n))
     return columns, columns @ np.maximum(rng.standard_normal(n), 0.0)
 
 
-@pytest.mark.parametrize("kind", [of_whole_numbers, of_any_size, nearly_parallel, carried])
+@pytest.mark.parametrize("kind", [of_whole_numbers, of_any_size, nearly_parallel, side_by_side, carried])
 @pytest.mark.parametrize("seed", range(40))
 def test_residual_is_the_least(kind, seed: int):
     """The vector r + b is A x with x >= 0, by a linear program; Aᵀr >= 0 and rᵀA x = 0, so no x is better."""
@@ -40,6 +47,14 @@ def test_residual_is_the_least(kind, seed: int):
         assert scipy.optimize.linprog(np.zeros(unit.shape[1]), A_eq=unit, b_eq=residual + right).success
     else:
         np.testing.assert_array_equal(residual, -right)
+
+
+@pytest.mark.parametrize("kind", [side_by_side, carried])
+@pytest.mark.parametrize("seed", range(40))
+def test_what_is_carried_leaves_round_off(kind, seed: int):
+    rng = np.random.default_rng(seed)
+    columns, right = kind(rng, int(rng.integers(1, 8)), int(rng.integers(0, 40)))
+    assert np.linalg.norm(nonnegative_residual(columns, right)) <= 1e-14 * np.linalg.norm(right)
 
 
 def test_ties_are_no_descent():
