@@ -49,6 +49,8 @@ CAPTIONS = {
     "deformed": "{stress} on the deformed shape; the surfaces move with the magnification",
 }
 """Name of a picture -> its caption."""
+STRESSES = "{stress} on the deformed shape in each load case; all have one scale of colors and one magnification"
+"""Caption of the picture "deformed" of load cases."""
 
 
 def render(
@@ -88,7 +90,7 @@ def render(
         infinite=any(result.accuracy.infinite for result in cases.values()),
         assessed=any(result.accuracy.met is not None for result in cases.values()),
         not_looked_at=NOT_LOOKED_AT,
-        pictures=[_picture(name, svg, first, stress) for name, svg in pictures.items()],
+        pictures=[_picture(name, svg, results, stress) for name, svg in pictures.items()],
         spec=spec,
     )
 
@@ -201,15 +203,21 @@ def _notes(cases: Mapping[str, Result]) -> Iterator[str]:
         yield f"{where}{sentence_case(note)}."
 
 
-def _picture(name: str, svg: bytes, first: Result, stress: StressMeasure) -> Any:
-    """A picture with its caption and text alternative."""
+def _picture(name: str, svg: bytes, results: Result | CaseResults, stress: StressMeasure) -> Any:
+    """A picture with its caption and text alternative, which names the load cases that it shows."""
     kind, _, number = name.partition("-")
+    cases = by_case(results)
+    first = next(iter(cases.values()))
     zones = first.contact.zone_names
     of_zone = (
         f"{zones[int(number) - 1]}: {ZONE_PICTURES[kind]}" if number else sentence_case(ZONE_PICTURES.get(kind, ""))
     )
     caption = of_zone if number or name not in CAPTIONS else CAPTIONS[name]
+    shows = first.contact.name
+    if isinstance(results, CaseResults) and name != "problem":
+        shows = f"{results.name}: {', '.join(cases)}"
+        caption = STRESSES if name == "deformed" else caption
     if name == "problem" and first.problem is not None and first.problem.case is not None:
         caption = f"{caption}; with the loads of {first.problem.case}"
     caption = caption.replace("{stress}", stress.words if number else sentence_case(stress.words))
-    return name, picture(svg, caption, f"{first.contact.name}. {caption}.")
+    return name, picture(svg, caption, f"{shows}. {caption}.")

@@ -10,7 +10,7 @@ from tool_problems import FREE, FREE_CASES, made
 from bemcontact.analysis.case_comparisons import compare_cases
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
-from bemcontact.options import ComparisonOptions
+from bemcontact.options import ComparisonOptions, StressMeasure
 from bemcontact.report.bars import NOTHING
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import peak_of, total_force
@@ -75,6 +75,18 @@ def test_stress_that_is_infinite_is_told_before_its_picture_is_believed():
     assert together("von Mises, at corners and edges infinite at (2, 0)") in together(text)
     assert "error bar, from the stress on another mesh" in text
     assert 'id="stress"' not in render(condensed(), {}, None)
+
+
+def test_the_page_of_load_cases_has_one_picture_of_their_stress_before_its_table():
+    """With the stress that was asked for in its caption, and the load cases in its text alternative."""
+    drawn = {name: vector_graphic(it) for name, it in pictures_of(cases(), StressMeasure.MAX_SHEAR).items()}
+    page = render(cases(), drawn, None, stress=StressMeasure.MAX_SHEAR)
+    stress = page[page.index('<section id="stress">') : page.index('<section id="zones">')]
+    before_table = stress[: stress.index("<table")]
+    assert before_table.count("<img") == stress.count("<img") == 1
+    assert "Largest shear stress on the deformed shape in each load case" in before_table
+    assert f'alt="{cases().name}: {", ".join(cases().results)}. Largest shear' in before_table
+    assert page.count("on the deformed shape in each load case") == 2  # caption and text alternative
 
 
 def test_the_picture_of_the_problem_says_whose_loads_it_shows():

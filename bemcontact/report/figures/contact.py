@@ -89,6 +89,46 @@ class Fan:
         return float(1 / (closing / (steps**2).sum(axis=1)).max()) if closing.any() else np.inf
 
 
+@dataclass(frozen=True, kw_only=True)
+class Setting:
+    """What pictures side by side share: a window, two corners (2, 2), and the pressure and length of the longest fan.
+
+    A `part` of the body that a close-up shows has no supports and no loads.
+    """
+
+    window: Array
+    pressure: float
+    length: float
+    part: bool
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the window."""
+        return float(np.hypot(*np.ptp(self.window, axis=0)))
+
+
+def setting_of(results: Sequence[Result], zone: str | None = None) -> Setting:
+    """Choose what shows the deformed body, or the contact of a zone, in all results; fans are long and do not cross."""
+    states = [result.boundary for result in results if result.boundary is not None]
+    fans = [
+        [fan for fan in _fans(result, result.boundary) if zone in (None, fan.zone)]
+        for result in results if result.boundary is not None
+    ]  # fmt: skip
+    part = zone is not None and any(fans)
+    if zone is not None and part:
+        size = max(body_extent(states[0]))
+        windows = [_around(_nearest(own, zone, size)) for own in fans if own]
+    else:
+        windows = [_curves(state)[1].reshape(-1, 2) for state in states]
+    places = np.concatenate(windows)
+    window = np.array([places.min(axis=0), places.max(axis=0)])
+    pressure = max((fan_scale(own) for own in fans if own), default=1.0)
+    width, height = np.ptp(window, axis=0)
+    length = max(TALL * float(np.sqrt(width * height)), LEAST * float(np.hypot(width, height)))
+    crossings = [CROSSING * fan.longest(pressure) for own in fans for fan in own]
+    return Setting(window=window, pressure=pressure, length=min([length, *crossings]), part=part)
+
+
 def _peak_text(fan: Fan, fans: Sequence[Fan], bar: float | None) -> str:
     """The largest pressure of a piece of contact, with the error bar of its zone if it is the largest there."""
     largest = fan.peak == max(other.peak for other in fans if other.zone == fan.zone)
@@ -112,7 +152,6 @@ def draw_contact(
     axes: Axes,
     result: Result,
     zone: str | None = None,
-    scale: float | None = None,
     stress: StressMeasure | None = None,
 ) -> None:
     """Draw the deformed body to scale, its supports and loads, the rigid surfaces, and the pressure as a fan.
@@ -120,31 +159,30 @@ def draw_contact(
     The fan lies outside the body, along the normals of the rigid surface. The largest pressure of each unbroken piece
     of contact is written beside it; one that is infinite is cut off and written as such. Of a `zone` only its contact
     is drawn, with as much of the body to either side, without supports and loads; if it has several contacts far from
-    each other, that with the largest pressure. `scale` is the pressure with the longest fan; it is chosen if absent.
-    With a `stress` the body is filled with its contours. `ValueError` for the result of a condensed problem.
+    each other, that with the largest pressure. With a `stress` the body is filled with its contours. `ValueError` for
+    the result of a condensed problem.
     """
-    sketch_contact(axes, result, zone, scale, stress)()
+    sketch_contact(axes, result, zone, stress=stress)()
 
 
 def sketch_contact(
     axes: Axes,
     result: Result,
     zone: str | None = None,
-    scale: float | None = None,
+    setting: Setting | None = None,
     stress: StressMeasure | None = None,
 ) -> Callable[[], None]:
-    """Draw as `draw_contact` does, and return what writes the numbers; call it when the whole page has its contents."""
+    """Draw as `draw_contact` does, and return what writes the numbers; call it when the whole page has its contents.
+
+    The setting is that of the result alone if there is none for several.
+    """
     state, problem, units = result.boundary, result.problem, units_of(result.contact)
     if state is None or problem is None:
         raise ValueError("the result of a condensed problem has no boundary to draw")
     loops = _draw_body(axes, state)
     fans = [fan for fan in _fans(result, state) if zone in (None, fan.zone)]
-    part = zone is not None and bool(fans)
-    window = np.concatenate(loops)
-    if zone is not None and fans:
-        window = _around(_nearest(fans, zone, max(body_extent(state))))
-    width, height = np.ptp(window, axis=0)
-    size = float(np.hypot(width, height))
+    setting = setting or setting_of([result], zone)
+    window, size, part = setting.window, setting.size, setting.part
     reach = size if part else OVERHANG * size
     grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in surfaces_of(result, problem, reach)]
     covered = [np.clip(ground, window.min(axis=0) - reach, window.max(axis=0) + reach) for ground in grounds]
@@ -152,10 +190,7 @@ def sketch_contact(
     if not part:
         displacement = _displacement(state)
         symbols = [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
-    infinite = result.accuracy.infinite
-    scale = scale or fan_scale(fans)
-    length = max(TALL * float(np.sqrt(width * height)), LEAST * size)
-    length = min([length, *(CROSSING * fan.longest(scale) for fan in fans)])
+    infinite, scale, length = result.accuracy.infinite, setting.pressure, setting.length
     names, tips = list[Name](), list[Array]()
     for fan in fans:
         tips.append(fan.feet - length * np.minimum(fan.pressure / scale, 1.0)[:, None] * fan.normals)
@@ -190,8 +225,7 @@ def _inked(fan: Fan, tips: Array) -> Array:
 
 def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
     """Draw the deformed body, and its undeformed outline where the two differ visibly; return loops (j, 2)."""
-    samples = 5 if len(state.points) < MANY_ELEMENTS else 3
-    before, after = (element_curves(at, samples) for at in (state.points, state.points + state.displacement))
+    before, after = _curves(state)
     outline = outline_of(state, after)
     axes.add_patch(PathPatch(outline, facecolor=BODY, edgecolor="none", zorder=0))
     axes.add_patch(PathPatch(outline, facecolor="none", edgecolor=BLACK, linewidth=1.8, zorder=3))
@@ -199,6 +233,12 @@ def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
         undeformed = outline_of(state, before)
         axes.add_patch(PathPatch(undeformed, facecolor="none", edgecolor=GREY, linewidth=0.9, linestyle="dashed"))
     return [loop.reshape(-1, 2) for loop in loops_of(state, after)]
+
+
+def _curves(state: BoundaryState) -> tuple[Array, Array]:
+    """Curves (m, c, 2) of the elements before and after the deformation."""
+    samples = 5 if len(state.points) < MANY_ELEMENTS else 3
+    return element_curves(state.points, samples), element_curves(state.points + state.displacement, samples)
 
 
 def _draw_fan(axes: Axes, fan: Fan, tips: Array, spacing: float) -> None:
@@ -235,13 +275,7 @@ def _fans(result: Result, state: BoundaryState) -> Iterator[Fan]:
 
 def fan_scale(fans: Sequence[Fan]) -> float:
     """The pressure at which fans have their full length: the largest, unless it is far above the mean."""
-    return min(max(fan.peak for fan in fans), CUT * max(fan.mean for fan in fans)) if fans else 1.0
-
-
-def common_scale(results: Sequence[Result]) -> float | None:
-    """The pressure at which the fans of several results have their full length; None where nothing touches."""
-    fans = [[*_fans(result, result.boundary)] for result in results if result.boundary is not None]
-    return max((fan_scale(own) for own in fans if own), default=None)
+    return min(max(fan.peak for fan in fans), CUT * max(fan.mean for fan in fans))
 
 
 def _nearest(fans: Sequence[Fan], zone: str, size: float) -> Array:

@@ -1,5 +1,7 @@
 """The deformed shape of a body, magnified so that it is seen, with the rigid surfaces moved along."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
@@ -32,10 +34,31 @@ def draw_deformed(axes: Axes, result: Result, stress: StressMeasure | None = Non
     with its contours; a ring marks the largest, crosses places where it is infinite. `ValueError` for the result of a
     condensed problem.
     """
+    factor = magnification([result])
+    state = draw_shape(axes, result, factor)
+    marked = "thick: in contact; dashed: undeformed"
+    if stress is not None:
+        marked = fill_with_stress(axes, result, stress, factor)
+    known = (bar.value for bar in result.accuracy.bars if bar.quantity == "displacement")  # as the table has it
+    most = next(known, None) or float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
+    largest = with_unit(f"{most:.3g}", plain(units_of(result.contact).length))
+    title = f"deformed shape, {in_words(factor)}\nlargest displacement {largest}; {marked}"
+    axes.set_title(title, loc="left", fontsize=10)
+
+
+def in_words(factor: float) -> str:
+    """Write what a factor magnifies."""
+    return "displacements to scale" if factor == 1 else f"displacements and gaps × {factor:g}"
+
+
+def draw_shape(axes: Axes, result: Result, factor: float) -> BoundaryState:
+    """Draw the boundary before and after deformation, magnified by a factor, and the surfaces; return the boundary.
+
+    `ValueError` for the result of a condensed problem.
+    """
     state, problem = result.boundary, result.problem
     if state is None or problem is None:
         raise ValueError("the result of a condensed problem has no boundary to draw")
-    factor = _magnification(result, state)
     before = element_curves(state.points, 9)
     after = element_curves(state.points + factor * state.displacement, 9)
     axes.add_collection(LineCollection(list(before), colors=GREY, linewidths=0.9, linestyles="dashed", zorder=2))
@@ -48,17 +71,8 @@ def draw_deformed(axes: Axes, result: Result, stress: StressMeasure | None = Non
     low, high = (end(np.concatenate(covered), axis=0) for end in (np.min, np.max))
     grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in surfaces]
     covered += [np.clip(ground, low - OVERHANG * size, high + OVERHANG * size) for ground in grounds]
-    unit = units_of(result.contact).length
-    frame_plan(axes, np.concatenate(covered), unit)
-    marked = "thick: in contact; dashed: undeformed"
-    if stress is not None:
-        marked = fill_with_stress(axes, result, stress, factor)
-    known = (bar.value for bar in result.accuracy.bars if bar.quantity == "displacement")  # as the table has it
-    most = next(known, None) or float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
-    largest = with_unit(f"{most:.3g}", plain(unit))
-    scale = "displacements to scale" if factor == 1 else f"displacements and gaps × {factor:g}"
-    title = f"deformed shape, {scale}\nlargest displacement {largest}; {marked}"
-    axes.set_title(title, loc="left", fontsize=10)
+    frame_plan(axes, np.concatenate(covered), units_of(result.contact).length)
+    return state
 
 
 def _draw_touching(axes: Axes, result: Result, state: BoundaryState, after: Array) -> None:
@@ -70,6 +84,12 @@ def _draw_touching(axes: Axes, result: Result, state: BoundaryState, after: Arra
     axes.scatter(*after[:, ::4][touching].T, s=10, color=VERMILION, zorder=4)
 
 
+def magnification(results: Sequence[Result]) -> float:
+    """Choose the factor that magnifies the displacements of results: the smallest that one of them has alone."""
+    moved = ((result, state) for result in results if (state := result.boundary) and state.displacement.any())
+    return min((_magnification(result, state) for result, state in moved), default=1.0)
+
+
 def _magnification(result: Result, state: BoundaryState) -> float:
     """Choose 1, 2 or 5 times a power of ten so that the largest displacement can be seen.
 
@@ -77,7 +97,7 @@ def _magnification(result: Result, state: BoundaryState) -> float:
     """
     largest = float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
     size = float(np.hypot(*body_extent(state)))
-    if largest == 0 or largest >= MAGNIFIED * size / 2:
+    if largest >= MAGNIFIED * size / 2:
         return 1.0
     wanted = MAGNIFIED * size / largest
     power = 10.0 ** np.floor(np.log10(wanted))

@@ -1,10 +1,10 @@
-"""The picture of all load cases: body and contact of each, their pressures and the envelope of these."""
+"""The picture of all load cases: contact and stress of each, their pressures and the envelope of these."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
@@ -14,11 +14,11 @@ from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.contact import (
     body_extent,
     close_ups,
-    common_scale,
     draw_contact,
+    setting_of,
     sketch_contact,
 )
-from bemcontact.report.figures.deformed import draw_deformed
+from bemcontact.report.figures.deformed import draw_deformed, draw_shape, in_words, magnification
 from bemcontact.report.figures.mesh_study import plan_of
 from bemcontact.report.figures.page import (
     GREY,
@@ -44,6 +44,7 @@ from bemcontact.report.figures.result import (
     of_zone,
     show_around,
 )
+from bemcontact.report.figures.stress import SAME, add_bar, color_scale, fill_body
 from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import case_verdicts
 
@@ -52,6 +53,8 @@ MOST = 9
 """Largest number of load cases that have pictures of their own."""
 TINY = 0.12
 """Extent of the contact over that of the body below which close-ups are drawn instead of bodies."""
+APART = 0.5
+"""Extent of the close-up of the contacts of all load cases over that of the body from which on bodies are drawn."""
 DASHES = ("solid", "dashed", "dotted", "dashdot")
 """Line styles of unbroken pieces of boundary."""
 ENVELOPE = "largest of all"
@@ -59,33 +62,54 @@ ENVELOPE = "largest of all"
 
 
 def figure_of(results: Result | CaseResults, stress: StressMeasure = StressMeasure.VON_MISES) -> Figure:
-    """Compose the page of a result, with contours of a stress, or of the results of all load cases."""
-    return figure_of_result(results, stress) if isinstance(results, Result) else figure_of_cases(results)
+    """Compose the page of a result, or of the results of all load cases, with contours of a stress."""
+    return figure_of_result(results, stress) if isinstance(results, Result) else figure_of_cases(results, stress)
 
 
-def figure_of_cases(cases: CaseResults) -> Figure:
-    """Compose a page with the contact of each load case, and the pressures of all with their envelope."""
+def figure_of_cases(cases: CaseResults, stress: StressMeasure = StressMeasure.VON_MISES) -> Figure:
+    """Compose a page with contact and stress of each load case, and the pressures of all with their envelope."""
     shown, first = shown_cases(cases), next(iter(cases.results.values()))
     panels = panels_of(first)
     columns, rows, height = _grid(shown, first)
-    figure = new_page(INCHES, 0.8 + rows * height + ROW * len(panels))
-    grid = figure.add_gridspec(rows + len(panels), columns, height_ratios=[*rows * [height], *len(panels) * [ROW]])
-    places = [figure.add_subplot(grid[divmod(i, columns)]) for i in range(len(shown) if rows else 0)]
-    for row, zone in enumerate(panels, rows):
-        draw_case_pressures(figure.add_subplot(grid[row, :]), cases, zone)
+    bodies = 2 * [rows * height] if rows else []
+    heights = [*bodies, ROW * len(panels)]
+    figure = new_page(INCHES, 0.8 + sum(heights))
+    *above, below = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
+    for row, zone in enumerate(panels):
+        draw_case_pressures(below.add_subplot(len(panels), 1, row + 1), cases, zone)
     entitle(figure, f"{wrapped(cases.name, 6 * INCHES)}: all load cases", case_verdicts(cases), 9 * INCHES)
-    draw_case_contacts(places, cases, shown)
+    if above:
+        draw_case_contacts(_places(above[0], shown, rows, columns), cases, shown)
+        draw_case_stresses(_places(above[1], shown, rows, columns), cases, shown, stress)
     return figure
 
 
 def figure_of_contacts(cases: CaseResults) -> Figure:
     """Compose a picture with the contact of each load case alone."""
-    shown, first = shown_cases(cases), next(iter(cases.results.values()))
-    columns, rows, height = _grid(shown, first)
-    figure = new_page(INCHES * min(1.0, columns / 3), rows * height)
-    grid = figure.add_gridspec(rows, columns)
-    draw_case_contacts([figure.add_subplot(grid[divmod(i, columns)]) for i in range(len(shown))], cases, shown)
+    shown = shown_cases(cases)
+    figure, places = _small_multiples(cases, shown)
+    draw_case_contacts(places, cases, shown)
     return figure
+
+
+def figure_of_stresses(cases: CaseResults, stress: StressMeasure = StressMeasure.VON_MISES) -> Figure:
+    """Compose a picture with the stress on the deformed shape of each load case alone."""
+    shown = shown_cases(cases)
+    figure, places = _small_multiples(cases, shown)
+    draw_case_stresses(places, cases, shown, stress)
+    return figure
+
+
+def _small_multiples(cases: CaseResults, shown: Sequence[str]) -> tuple[Figure, list[Axes]]:
+    """A page with axes for each load case."""
+    columns, rows, height = _grid(shown, next(iter(cases.results.values())))
+    figure = new_page(INCHES * min(1.0, columns / 3), rows * height)
+    return figure, _places(figure, shown, rows, columns)
+
+
+def _places(figure: Figure | SubFigure, shown: Sequence[str], rows: int, columns: int) -> list[Axes]:
+    """Axes for each load case, row by row."""
+    return [figure.add_subplot(rows, columns, place) for place in range(1, len(shown) + 1)]
 
 
 def panels_of(result: Result) -> tuple[str | None, ...]:
@@ -116,18 +140,61 @@ def _grid(shown: Sequence[str], first: Result) -> tuple[int, int, float]:
 
 
 def draw_case_contacts(places: Sequence[Axes], cases: CaseResults, shown: Sequence[str]) -> None:
-    """Draw the contact of load cases; the fans of all have one scale.
+    """Draw the contact of load cases; the bodies of all have one scale, and so have their fans.
 
-    If the only zone is small beside the body in all of them, close-ups are drawn.
+    If the only zone is small beside the body in all of them, and at much the same place, close-ups are drawn.
     """
     results = [cases.results[name] for name in shown]
-    scale, zones = common_scale(results), [name for result in results[:1] for name in result.contact.zone_names]
-    near = len(zones) == 1 and all(close_ups(result, TINY) for result in results if result.touching.any())
-    for axes, name in zip(places, shown, strict=True):
-        result = cases.results[name]
+    zone = _close_zone(results)
+    setting = setting_of(results, zone)
+    for axes, name, result in zip(places, shown, results, strict=True):
         axes.set_title(f"{short_label(name, 30)}: {_peak(result)}", loc="left", fontsize=10)
-        sketch_contact(axes, result, zones[0] if near else None, scale)  # there is no room for more numbers
-        if not near:
+        sketch_contact(axes, result, zone, setting)  # there is no room for more numbers
+    _align(places, framed=zone is not None)
+
+
+def draw_case_stresses(places: Sequence[Axes], cases: CaseResults, shown: Sequence[str], stress: StressMeasure) -> None:
+    """Draw a stress on the deformed shape of load cases; all have one magnification and one scale of colors.
+
+    A ring marks the largest stress of each, crosses places where it is infinite.
+    """
+    results = [cases.results[name] for name in shown]
+    factor = magnification(results)
+    scale, marked = color_scale(results, stress, factor), {"dashed: undeformed": None}
+    for axes, name, result in zip(places, shown, results, strict=True):
+        draw_shape(axes, result, factor)
+        drawn, words = fill_body(axes, result, scale, factor)
+        title = short_label(name, 40)
+        if words == SAME:
+            title = f"{title}\n{words}"
+        else:
+            marked[words] = None
+        axes.set_title(title, loc="left", fontsize=10)
+        if axes is places[-1]:
+            add_bar(places, drawn, result, scale)
+    _align(places, framed=False)
+    figure = places[0].get_figure(root=False)
+    assert figure is not None
+    title = f"deformed shapes, {in_words(factor)}\n{'; '.join(marked)}"
+    figure.suptitle(title, x=0.01, ha="left", fontsize=10)
+
+
+def _close_zone(results: Sequence[Result]) -> str | None:
+    """The only zone, if one close-up shows its contact under all load cases."""
+    first, touching = results[0], [result for result in results if result.touching.any()]
+    zones = first.contact.zone_names
+    if first.boundary is None or len(zones) != 1 or not all(close_ups(result, TINY) for result in touching):
+        return None
+    shown = np.ptp(setting_of(results, zones[0]).window, axis=0).max()
+    return zones[0] if shown < APART * max(body_extent(first.boundary)) else None
+
+
+def _align(places: Sequence[Axes], *, framed: bool) -> None:
+    """Give axes equal limits, so that bodies have one scale and one place; those without a frame have no ticks."""
+    (left, right), (low, high) = (np.array([axes.axis()[side : side + 2] for axes in places]).T for side in (0, 2))
+    for axes in places:
+        axes.set(xlim=(left.min(), right.max()), ylim=(low.min(), high.max()))
+        if not framed:
             axes.set(xticks=[], yticks=[], xlabel="", ylabel="")
             axes.spines[:].set_visible(False)
 
@@ -190,8 +257,8 @@ WIDTH = 5.4
 def pictures_of(results: Result | CaseResults, stress: StressMeasure = StressMeasure.VON_MISES) -> dict[str, Figure]:
     """Make the pictures for the page of a result or of all load cases, by name.
 
-    Names are "problem" and "contact" or "contacts" (if a body is known), "deformed" of a result, and for each zone
-    "pressure-1", "gap-1", or "contact-1" if it needs a close-up; "pressure" if there are too many zones.
+    Names are "problem", "contact" or "contacts", and "deformed" (if a body is known), and for each zone "pressure-1",
+    and of a result "gap-1", and "contact-1" if it needs a close-up; "pressure" if there are too many zones.
     """
     first = results if isinstance(results, Result) else next(iter(results.results.values()))
     figures, near = dict[str, Figure](), [] if isinstance(results, CaseResults) else close_ups(results)
@@ -200,6 +267,7 @@ def pictures_of(results: Result | CaseResults, stress: StressMeasure = StressMea
     if isinstance(results, CaseResults):
         if shown_cases(results):
             figures["contacts"] = figure_of_contacts(results)
+            figures["deformed"] = figure_of_stresses(results, stress)
     elif first.boundary is not None:
         figures["contact"], axes = _page(first)
         draw_contact(axes, first)

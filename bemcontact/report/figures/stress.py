@@ -1,5 +1,9 @@
 """Stress all over the body, as filled contours in the pictures of it."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
@@ -7,7 +11,7 @@ from matplotlib.tri import Triangulation, TriContourSet
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array, BoolArray, IntArray
-from bemcontact.contact.stress import PointKind
+from bemcontact.contact.stress import PointKind, TriangulatedBody
 from bemcontact.options import StressMeasure
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.page import BLACK, labeled
@@ -18,6 +22,7 @@ UNSEEN = 0.003
 """Share of the area that is shown on which stress may be beyond the scale."""
 UNIFORM = 1e-6
 """Relative difference of stresses that is round-off."""
+SAME = "the stress is the same all over"
 LEVELS = 10
 """About as many levels of color."""
 COLOURS, BOTH_SIGNS = "viridis", "RdBu_r"
@@ -37,28 +42,65 @@ def fill_with_stress(
     Their scale is for all values but those on a small part of the area, and beside places where stress is infinite.
     The words that are returned say what is marked.
     """
+    scale = color_scale([result], measure, factor, window)
+    drawn, words = fill_body(axes, result, scale, factor, window)
+    add_bar([axes], drawn, result, scale)
+    return words
+
+
+@dataclass(frozen=True, kw_only=True)
+class ColorScale:
+    """Colors of a stress: between levels (l,), and those of stress beyond them."""
+
+    measure: StressMeasure
+    levels: Array
+    extend: Literal["neither", "both", "max"]
+
+
+def color_scale(
+    results: Sequence[Result], measure: StressMeasure, factor: float = 1.0, window: Array | None = None
+) -> ColorScale:
+    """Choose the colors of a stress for bodies side by side; arguments are as of `fill_with_stress`."""
+    size, most = 0.0, 0.0
+    for result in results:
+        body, points, values, shown, infinite = _stresses(result, measure, factor, window)
+        extent = float(np.hypot(*np.ptp(points if window is None else window, axis=0)))
+        counts = shown & ~infinite & ~_beside(points, points[infinite], BESIDE * extent)
+        counts = counts if counts.any() else shown & ~infinite
+        size = max(size, _seen(points, body.triangles, np.where(counts, np.abs(values), 0.0)))
+        most = np.inf if infinite.any() else max(most, float(values.max()))
+    size = size or 1.0
+    low = -size if measure.signed else 0.0
+    levels = np.asarray(MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, size))
+    extend = "both" if measure.signed else "max" if most > levels[-1] else "neither"
+    return ColorScale(measure=measure, levels=levels, extend=extend)
+
+
+def fill_body(
+    axes: Axes, result: Result, scale: ColorScale, factor: float = 1.0, window: Array | None = None
+) -> tuple[TriContourSet, str]:
+    """Fill and mark the body as `fill_with_stress` does, in given colors; return the contours, and what is marked."""
+    body, points, values, shown, infinite = _stresses(result, scale.measure, factor, window)
+    triangles = Triangulation(points[:, 0], points[:, 1], body.triangles)
+    drawn = axes.tricontourf(
+        triangles, np.where(infinite, 2.0 * scale.levels[-1], values), levels=scale.levels, extend=scale.extend,
+        cmap=BOTH_SIGNS if scale.measure.signed else COLOURS, zorder=0,
+    )  # fmt: skip
+    finite = shown & ~infinite
+    return drawn, _mark(axes, points[finite], np.abs(values[finite]), points[infinite & shown])
+
+
+def _stresses(
+    result: Result, measure: StressMeasure, factor: float, window: Array | None
+) -> tuple[TriangulatedBody, Array, Array, BoolArray, BoolArray]:
+    """Triangles, displaced corners (k, 2), stress (k,) there, which of them are shown, and where it is infinite."""
     body = result.triangulated
     points = body.points + factor * body.displacement
     values = body.stress.measured(measure)
     shown = np.ones(len(points), bool)
     if window is not None:
         shown = np.all((points >= window[0]) & (points <= window[1]), axis=1)
-    infinite = body.stress.kind == PointKind.SINGULAR
-    extent = float(np.hypot(*np.ptp(points if window is None else window, axis=0)))
-    counts = shown & ~infinite & ~_beside(points, points[infinite], BESIDE * extent)
-    counts = counts if counts.any() else shown & ~infinite
-    size = _seen(points, body.triangles, np.where(counts, np.abs(values), 0.0)) or 1.0
-    low = -size if measure.signed else 0.0
-    levels = MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, size)
-    beyond = np.where(infinite, 2.0 * levels[-1], values)
-    triangles = Triangulation(points[:, 0], points[:, 1], body.triangles)
-    drawn = axes.tricontourf(
-        triangles, beyond, levels=levels, cmap=BOTH_SIGNS if measure.signed else COLOURS, zorder=0,
-        extend="both" if measure.signed else "max" if beyond.max() > levels[-1] else "neither",
-    )  # fmt: skip
-    _add_bar(axes, drawn, result, measure)
-    finite = shown & ~infinite
-    return _mark(axes, points[finite], np.abs(values[finite]), points[infinite & shown])
+    return body, points, values, shown, body.stress.kind == PointKind.SINGULAR
 
 
 def _seen(points: Array, triangles: IntArray, sizes: Array) -> float:
@@ -85,7 +127,7 @@ def _mark(axes: Axes, points: Array, sizes: Array, infinite: Array) -> str:
     if not len(infinite):
         at = int(np.argmax(sizes))
         if np.ptp(sizes) <= UNIFORM * sizes[at]:
-            return "the stress is the same all over"
+            return SAME
         words = "ring: largest stress"
         for color, width, order in (("white", 2.6, 5), (BLACK, 1.2, 6)):
             axes.plot(
@@ -96,11 +138,11 @@ def _mark(axes: Axes, points: Array, sizes: Array, infinite: Array) -> str:
     return words
 
 
-def _add_bar(axes: Axes, drawn: TriContourSet, result: Result, measure: StressMeasure) -> None:
-    """Add the scale of colors."""
-    figure = axes.get_figure(root=True)
+def add_bar(places: Sequence[Axes], drawn: TriContourSet, result: Result, scale: ColorScale) -> None:
+    """Add the scale of colors beside axes; it is that of all of them."""
+    figure = places[0].get_figure(root=False)
     assert figure is not None
-    bar = figure.colorbar(drawn, ax=axes, fraction=0.045, pad=0.02, shrink=0.9)
-    bar.set_label(labeled(measure.words, units_of(result.contact).stress), fontsize=9)
+    bar = figure.colorbar(drawn, ax=[*places], fraction=0.045, pad=0.02, shrink=0.9)
+    bar.set_label(labeled(scale.measure.words, units_of(result.contact).stress), fontsize=9)
     bar.ax.tick_params(labelsize=8.5)
     bar.outline.set_visible(False)  # pyright: ignore[reportCallIssue]

@@ -32,9 +32,10 @@ def found() -> CaseResults:
 
 
 def case_axes(cases: CaseResults) -> tuple[list[Axes], list[Axes]]:
-    """The pictures of load cases, and the panels of pressures."""
-    axes, count = figures.figure_of(cases).axes, len(shown_cases(cases))
-    return axes[:count], axes[count:]
+    """The pictures of the contact of load cases, and the panels of pressures."""
+    axes = figures.figure_of(cases).axes
+    panels = [item for item in axes if item.get_ylabel().startswith("pressure")]
+    return [item for item in axes if item not in panels][: len(shown_cases(cases))], panels
 
 
 def test_each_case_has_its_picture_and_its_curves():
