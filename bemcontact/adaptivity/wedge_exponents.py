@@ -28,6 +28,8 @@ RESONANT = 1e-6
 """Largest |λ - 1| at which the pressure is computed as that of a logarithm."""
 STEP = 1e-6
 """Step of λ for a derivative of the equations."""
+MARGINAL = 1e-6
+"""Angle [rad], and sin² of it, by which round-off may exceed those at which λ = 1."""
 UNPRESSED = 1e-6
 """Pressure on a face in contact, over the largest stress of a state, that is none."""
 
@@ -80,7 +82,7 @@ def stress_is_infinite(start: float, angle: float, faces: tuple[Face, Face], poi
     """
     clamped, free = ((held, held) in [face.held for face in faces] for held in (True, False))
     if clamped and free:
-        return bool(angle > np.pi / 2 or np.sin(angle) ** 2 > 1 - poisson_ratio)
+        return bool(angle > np.pi / 2 + MARGINAL or np.sin(angle) ** 2 > 1 - poisson_ratio + MARGINAL)
     return bool(_roots((start, angle, faces, poisson_ratio), GRID))
 
 

@@ -17,11 +17,13 @@ from bemcontact.bem import reference_element
 from bemcontact.contact.stress import LargestStresses, Stress, StressPeak, TriangulatedBody
 
 RISE, SEARCHES = 0.3, 24
-"""Part of the largest stress at a point from which on a search begins at others, and the most searches."""
+"""Part of the largest stress at a point from which on a search begins at others, and the searches at a time."""
 STEP, SETTLED, SHORTER, MOST_STEPS = 0.2, 1e-2, 0.3, 30
 """First step over the depth of the start, the last one over the first, their ratio, and the most steps."""
 SAMPLES = 65
 """Places on an element from which the depth of a point is measured first."""
+ALIKE = 1e-9
+"""Relative difference of distances that is round-off."""
 BESIDE_LINE = 1e-7
 """Least distance from a line of symmetry over the size of the body."""
 SHALLOW = 0.2
@@ -74,9 +76,17 @@ class _Search:
     def largest(self, elements: IntArray, measure: Measure, surface: IntArray) -> StressPeak | None:
         """The largest maximum inside that is found from points below some elements, with its depth below others."""
         start, depth = self._starts(elements, measure)
-        if not len(start):
-            return None
-        at, value, inside = self._climb(start, STEP * depth, measure)
+        for first in range(0, len(start), SEARCHES):
+            some = slice(first, first + SEARCHES)
+            peak = self._highest(*self._climb(start[some], STEP * depth[some], measure), measure, surface)
+            if peak is not None:
+                return peak
+        return None
+
+    def _highest(
+        self, at: Array, value: Array, inside: BoolArray, measure: Measure, surface: IntArray
+    ) -> StressPeak | None:
+        """The largest of the ends of searches that is a maximum inside; the first three are of `_climb`."""
         every = np.flatnonzero(~self.mirrors)
         for i in np.argsort(-np.where(inside, value, -np.inf))[: int(inside.sum())]:
             depth, element = self._distance(at[i], every)
@@ -87,8 +97,11 @@ class _Search:
         return None
 
     def _starts(self, elements: IntArray, measure: Measure) -> tuple[Array, Array]:
-        """Points (k, 2) below some elements that are larger than their neighbors, and their depths (k,)."""
-        whole, rim = self.whole, len(self.whole.element)
+        """Points (k, 2) below some elements that are larger than their neighbors, and their depths (k,).
+
+        The largest is the first. A point as near to another element too is below both.
+        """
+        whole, rim, mesh = self.whole, len(self.whole.element), self.body.field.mesh
         outer = np.append(~self.mirrors[whole.element], np.zeros(len(whole.points) - rim, bool))
         values = np.where(outer, -np.inf, np.nan_to_num(measure(whole.stress), nan=-np.inf))
         around = np.full(len(values), -np.inf)
@@ -97,11 +110,12 @@ class _Search:
             np.maximum.at(around, ends[0], values[ends[1]])
             np.maximum.at(around, ends[1], values[ends[0]])
         sides = np.flatnonzero(~self.mirrors[whole.element])
-        depth, nearest = KDTree(whole.points[sides]).query(whole.points)
-        below = np.isin(whole.element[sides][nearest], elements)
+        own = np.vstack([whole.points[:rim][np.isin(whole.element, elements)], mesh.nodes[mesh.elements[elements, 2]]])
+        depth, away = (KDTree(points).query(whole.points)[0] for points in (whole.points[sides], own))
+        below = away <= (1 + ALIKE) * depth
         start = np.flatnonzero(below & (values >= around) & np.isfinite(values) & (depth > 0))
         start = start[values[start] > RISE * values[start].max(initial=0.0)]
-        start = start[np.argsort(-values[start])][:SEARCHES]
+        start = start[np.argsort(-values[start])]
         return whole.points[start], depth[start]
 
     def _climb(self, points: Array, step: Array, measure: Measure) -> tuple[Array, Array, BoolArray]:

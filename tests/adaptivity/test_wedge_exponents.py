@@ -144,6 +144,13 @@ def test_infinite_stress(angle: float, faces: tuple[Face, Face], infinite: bool)
     assert stress_is_infinite(0.0, angle, faces, 0.3) is infinite
 
 
+@pytest.mark.parametrize(("degrees", "poisson_ratio"), [(90, 0.0), (60, 0.25), (120, 0.25)])
+def test_round_off_of_an_angle_makes_no_stress_infinite(degrees: float, poisson_ratio: float):
+    """At a clamp λ = 1 where sin²ω = 1 - ν: on either side of 90 and 60 degrees stress is finite. At 120 it is not."""
+    for change in (-1e-12, -1e-15, 0, 1e-15, 1e-12):
+        assert stress_is_infinite(0.7, np.radians(degrees) + change, (FIXED, FREE), poisson_ratio) is (degrees == 120)
+
+
 @pytest.mark.parametrize("poisson_ratio", [0.0, 0.3, 0.45])
 def test_least_angle_of_an_infinite_stress_at_a_clamp(poisson_ratio: float):
     """Williams' equation sin²(λω) = (κ+1)²/4κ - λ² sin²ω/κ has λ = 1 at the angle from which stress is infinite."""

@@ -8,6 +8,7 @@ from indented_blocks import block, indented
 
 import bemcontact
 from bemcontact import ProblemError, Result
+from bemcontact.analysis.stress_bars import _on_mesh
 
 MODELS = Path(__file__).parents[2] / "models"
 
@@ -73,3 +74,42 @@ def test_no_contact():
     assert largest.boundary.value == pytest.approx(3 * np.sqrt(1 - 0.3 + 0.3**2), rel=1e-9)
     with pytest.raises(ProblemError, match="condensed"):
         bemcontact.solve(result.contact).largest_stresses()
+
+
+def on_round_support(elements: int, mirrored: bool = False, unit: float = 1.0) -> bemcontact.Problem:
+    """A block of 6 by 2 on a circle at three quarters of its length, on a coarse mesh, or its mirror image."""
+    corners = [("bottom", 0, 0), ("right", 6, 0), ("top", 6, 2), ("left", 0, 2)]
+    circle = {"center": [(1.5 if mirrored else 4.5) * unit, -3 * unit], "radius": 3 * unit, "body": "outside"}
+    return bemcontact.Problem(
+        name="block", material={"young_modulus": 1000, "poisson_ratio": 0.3}, accuracy=None,
+        boundary={"outer": [{"name": n, "start": [x * unit, y * unit], "elements": elements} for n, x, y in corners]},
+        conditions={"right" if mirrored else "left": {"displacement": {"x": 0}}, "top": {"pressure": 1}},
+        contact_zones={"foot": {"edges": "bottom", "surface": {"kind": "circle", **circle}}},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("elements", [6, 8, 12])
+def test_mirrored_and_in_other_units(elements: int):
+    """A point from which a search begins may be as near to an element that touches as to one that does not."""
+    changes = [{}, {"mirrored": True}, {"unit": 1e-3}, {"unit": 1e3}]
+    found = [
+        bemcontact.solve(on_round_support(elements, **change)).largest_stresses().shear["foot"] for change in changes
+    ]
+    assert [peak.value for peak in found] == pytest.approx([found[0].value] * 4, rel=1e-6)
+
+
+def test_finer_mesh_has_the_same_maximum():
+    """On it more of the points from which searches begin lie along the hole, and lead to the boundary."""
+    size, height = 4.5, 3.4
+    hole = {"name": "hole", "kind": "arc", "center": [1.4, 1.8], "radius": 0.4, "angles": [0, -360]}
+    corners = [("bottom", 0, 0), ("right", size, 0), ("top", size, height), ("axis", 0, height)]
+    circle = {"kind": "circle", "center": [0, -13], "radius": 13, "body": "outside"}
+    result = bemcontact.solve(bemcontact.Problem(
+        name="plate", material={"young_modulus": 1000, "poisson_ratio": 0}, accuracy=0.02,
+        boundary={"outer": [{"name": n, "start": [x, y]} for n, x, y in corners], "holes": [[hole]]},
+        conditions={"axis": {"displacement": {"x": 0}}, "top": {"pressure": 2}},
+        contact_zones={"foot": {"edges": "bottom", "surface": circle}},
+    ))  # fmt: skip
+    own = result.largest_stresses().inside
+    _, finer = _on_mesh(result.problem.refined(4), result.accuracy.infinite_places)
+    assert finer.inside.value == pytest.approx(own.value, rel=own.bar)
