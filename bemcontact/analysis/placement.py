@@ -48,6 +48,9 @@ UNSEEN = 1e-9
 """Normal displacement of pressed points by a free motion, over the largest one, that is none."""
 NO_CHANGE = 1e-7
 """Difference of the gaps, over the displacement scale of contact, that changes nothing."""
+SAME = 1e-9
+"""Relative difference of two changes of a force that is round-off: where its direction stays, both components change
+alike."""
 ALIKE = 0.1
 """Difference of displacements on the boundary, over one of them, up to which the body moves as a whole."""
 
@@ -294,7 +297,8 @@ def _forces_changed(
     total = own @ solution.pressure
     size = np.where(abs(was) >= SMALL_COMPONENT * total[:, None], abs(was), total[:, None])
     parts = abs(is_now - was) / np.where(size > 0, size, np.inf)
-    number, axis = np.unravel_index(int(np.argmax(parts)), parts.shape)
+    alike = parts >= (1 - SAME) * parts.max()
+    number, axis = np.unravel_index(int(np.argmax(alike)), parts.shape)
     part = float(parts[number, axis])
     if part < noted(gaps.problem):
         return None, ()

@@ -102,12 +102,10 @@ class _Pair:
     def _change_inside(self, peak: StressPeak, measure: Measure) -> float | None:
         """Largest change [p] of a stress at places around a maximum inside."""
         points = np.array(peak.point) + peak.depth * AROUND
-        at = [body.field.locate(points) for body in (self.one, self.two)]
-        both = at[0].inside & at[1].inside
-        if not both.any():
-            return None
-        one, two = (measure(body.at(body.field.locate(points[both]))) for body in (self.one, self.two))
-        return float(abs(one - two).max())
+        pair = [(body, body.field.locate(points)) for body in (self.one, self.two)]
+        inside = np.all([at.inside for _, at in pair], axis=0)
+        one, two = (measure(body.at(at)) for body, at in pair)
+        return float(abs(one - two)[inside].max()) if inside.any() else None
 
     def _change_along(self, peak: StressPeak, edge: str) -> float | None:
         """Largest change [p] of the equivalent stress at nodes of both meshes around a maximum on an edge."""

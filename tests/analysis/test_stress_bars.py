@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-from indented_blocks import indented
 
 import bemcontact
 from bemcontact.analysis.stress_bars import _on_mesh
@@ -13,10 +12,11 @@ MODELS = Path(__file__).parents[2] / "models"
 
 
 def test_bar_contains_hertz():
-    """0.3003 p0 (Johnson, section 4.2) for b/R = 0.003, where the circle's shear changes it by less than 0.1 %."""
-    result, _, peak = indented(0.003)
-    shear = result.largest_stresses().shear["foot"]
-    assert shear.bar is None or abs(shear.value - 0.3003 * peak) < (shear.bar + 1e-3) * shear.value
+    """0.3003 p0 (Johnson, section 4.2) but for 0.3 %, by which the normals of the circle change it at b/R = 0.03."""
+    result = bemcontact.solve(bemcontact.load(MODELS / "gallery" / "hertz_small.yaml"))
+    shear, peak = result.largest_stresses().shear["foot"], result.footprint.peak
+    assert 0 < shear.bar < 0.02
+    assert abs(shear.value - 0.3003 * peak.pressure) < (shear.bar + 3e-3) * shear.value
 
 
 @pytest.mark.parametrize("variant", [None, "stated mesh"])
@@ -46,11 +46,8 @@ def test_coarse_stress_has_a_large_bar():
     assert largest.boundary.bar > 5 * largest.inside.bar
 
 
-def test_unknown_bars():
-    """No bar is known where errors are not estimated; near an infinite stress none that says nothing is told."""
+def test_no_bar_where_errors_are_not_estimated():
+    """Without an accuracy nothing is known of the mesh, and nothing is said of the errors of stresses."""
     problem = bemcontact.load(MODELS / "cylinder_on_plane.yaml", variant="stated mesh").with_value("accuracy", None)
     largest = bemcontact.solve(problem).largest_stresses()
-    assert largest.inside.bar is None
-    punch = bemcontact.load(MODELS / "gallery" / "eccentric_punch.yaml").with_case("off the middle")
-    boundary = bemcontact.solve(punch).largest_stresses().boundary
-    assert boundary.bar is None or boundary.bar < 1
+    assert (largest.inside.bar, largest.boundary.bar, largest.shear["foot"].bar) == (None, None, None)
