@@ -209,7 +209,7 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
 
 def _lost_digits(answer: Solved) -> str | None:
     """Say that contact deforms the body by less than the rounding of its coordinates and displacements."""
-    modulus = answer.body.problem.material.young_modulus
+    modulus = min(part.material.young_modulus for part in answer.body.problem.parts)
     for item in answer.answers:
         deformed = float(item.condensation.contact.weights @ item.solution.pressure) / modulus
         largest = float(max(np.abs(answer.mesh.nodes).max(), np.abs(item.displacement).max()))

@@ -68,7 +68,7 @@ class CoarseMesh:
                 run, size, scale = self._interval(item)
                 away = min(away, abs(run.length - away)) if run.closed else away
             case "force":
-                number = [*self.own.body.problem.contact_zones].index(str(item.zone))
+                number = [*self.own.body.problem.zones].index(str(item.zone))
                 one, two = (answer.force_vector(number) for answer in self.pair)
                 away = max(away, float(np.linalg.norm(two - one)))
             case "pressure":
@@ -108,7 +108,7 @@ class CoarseMesh:
     def _pressure_at(self, which: int, run: ZoneRun, at: Array) -> Array:
         """Pressure on the stated mesh or the other one at positions of a run [p]."""
         solved = (self.own, self.finer)[which]
-        own = self.pair[which].pressure[[*solved.body.problem.contact_zones].index(run.zone)]
+        own = self.pair[which].pressure[[*solved.body.problem.zones].index(run.zone)]
         element = np.clip(np.searchsorted(run.ends, at) - 1, 0, len(run.ends) - 2)
         low, high = run.ends[element], run.ends[element + 1]
         shapes = reference_element.values((2 * at - low - high) / (high - low))

@@ -77,7 +77,7 @@ def _unresolved(difference: MeshDifference, *, of_fine: bool) -> str:
         for item in reported.stretches[run.number]:
             if item.points < LEAST_POINTS:
                 return f"too few points in contact to estimate it ({item.points} in an interval of {run.zone})"
-    names = [*difference.coarse.body.problem.contact_zones]
+    names = [*difference.coarse.body.problem.zones]
     for number, name in enumerate(names):
         if one.pressure[number].any() != two.pressure[number].any():
             return COMES_OR_GOES.format(name)
@@ -92,7 +92,7 @@ def _bars(difference: MeshDifference, singularities: Sequence[Singularity], of_f
     slow = max((item.exponent for item in singularities), default=0.5)
     estimate = _Estimate(difference, SAFETY / (2 ** (2 * (1 - slow)) - 1) if slow > 0.5 else SAFETY, of_fine)
     changes = [0.0]
-    for number, name in enumerate(difference.fine.body.problem.contact_zones):
+    for number, name in enumerate(difference.fine.body.problem.zones):
         its = [item for item in singularities if item.place.zone == name]
         m = pressure_change(difference, number, its)
         if m is None:
@@ -142,7 +142,8 @@ class _Estimate:
 def _strain(estimate: _Estimate) -> float:
     """Largest pressure over Young's modulus."""
     solved, answer = estimate.reported
-    return float(answer.pressure.max(initial=0.0)) / solved.body.problem.material.young_modulus
+    softest = min(part.material.young_modulus for part in solved.body.problem.parts)
+    return float(answer.pressure.max(initial=0.0)) / softest
 
 
 def _farthest(solved: Solved, answer: CaseAnswer) -> tuple[float, float] | None:
@@ -380,7 +381,7 @@ def _intensity(
     run = solved.run(item.place.run)
     side, length = contact_beside(run, answer.stretches[run.number], item.place.position)
     xi, _ = reference_element.gauss_legendre(2)
-    own = answer.pressure[[*solved.body.problem.contact_zones].index(run.zone)]
+    own = answer.pressure[[*solved.body.problem.zones].index(run.zone)]
     pressure = (reference_element.values(xi) @ own[run_elements(solved, run), :, None])[..., 0]
     at = (run.ends[:-1, None] + run.ends[1:, None]) / 2 + np.diff(run.ends)[:, None] / 2 * xi
     s: Array = np.min(

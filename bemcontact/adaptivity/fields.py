@@ -63,9 +63,8 @@ class CaseAnswer:
         Nothing determines motions that no contact point sees, and none at all where nothing touches.
         """
         body, whole = self.condensation.body, self.state.displacement
-        nodes = body.mesh.nodes[body.mesh.elements]
         free = (body.unseen,) if self.pressure.any() else (body.unseen, body.seen)
-        motions = np.concatenate([each.body.displacement(nodes) for each in free], axis=-1)
+        motions = np.concatenate([each.displacement(body.mesh)[body.mesh.elements] for each in free], axis=-1)
         if not motions.shape[-1]:
             return whole
         root = np.sqrt(body.mesh.tributary)[..., None]
@@ -136,7 +135,7 @@ class Solved:
     def in_zone(self) -> BoolArray:
         """Whether each zone has each element (zones, m)."""
         points = self.body.points
-        has = np.zeros((len(self.body.problem.contact_zones), len(self.mesh.elements)), bool)
+        has = np.zeros((len(self.body.problem.zones), len(self.mesh.elements)), bool)
         has[points.zone_of_share, points.element] = True
         return has
 
@@ -177,7 +176,7 @@ def answer_of(
     contact, body = condensation.contact, condensation.body
     intervals = footprint(contact, solution).intervals
     points = body.points
-    pressure = np.zeros((len(body.problem.contact_zones), *body.mesh.elements.shape))
+    pressure = np.zeros((len(body.problem.zones), *body.mesh.elements.shape))
     if intervals:  # else what there is of pressure is round-off
         pressure[points.zone_of_share, points.element, points.local] = solution.pressure[points.point]
     return CaseAnswer(
@@ -256,7 +255,7 @@ class MeshDifference:
     def _energy(self, one: tuple[Array, Array], two: tuple[Array, Array]) -> Array:
         """`energy` of the difference of two fields (displacement, traction), on the coarse and the fine mesh."""
         mesh, weights = self.fine.mesh, self.fine.weights
-        shear = self.fine.body.problem.material.shear_modulus
+        shear = self.fine.body.shear_moduli[:, None]
         length = weights.sum(axis=1)
         traction = _at_gauss(two[1] - halves(one[1]))
         xi, _ = reference_element.gauss_legendre(3)
@@ -310,7 +309,7 @@ def penetrations(answer: Solved, case: CaseAnswer) -> Iterator[tuple[int, float]
     condensation = case.condensation
     gaps = surface_gaps(condensation.body, case.state, condensation.contact, case.solution)
     size = float(np.hypot(*np.moveaxis(case.displacement, 2, 0)).max())
-    for number, zone in enumerate(answer.body.problem.contact_zones):
+    for number, zone in enumerate(answer.body.problem.zones):
         elements = np.flatnonzero(answer.in_zone[number] & ~(case.pressure[number] > 0).any(axis=1))
         if zone in gaps.surfaces and len(elements):
             least = gaps.linear(zone, elements).gap.min(axis=1)

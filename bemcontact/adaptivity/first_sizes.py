@@ -102,7 +102,7 @@ class SizedOutline:
 
 def outline(problem: Problem) -> SizedOutline:
     """The boundary of a problem, whatever its elements are."""
-    return SizedOutline(loops=tuple(Loop(edges=edges) for edges in problem.boundary.loops))
+    return SizedOutline(loops=tuple(Loop(edges=edges) for edges in problem.loops))
 
 
 def _curvature(edge: Edge, start: float) -> Iterator[Limit]:
@@ -136,7 +136,7 @@ def surface_sizes(problem: Problem, outline: SizedOutline) -> tuple[dict[int, li
     """Limits of the size where surfaces come near, and places where elements must end, both by loop."""
     limits: dict[int, list[Limit]] = {}
     marks: dict[int, list[float]] = {}
-    for name, zone in problem.contact_zones.items():
+    for name, zone in problem.zones.items():
         if isinstance(zone.surface, DeflectedContour):
             continue
         for number, loop in enumerate(outline.loops):

@@ -73,7 +73,7 @@ class MeshSearch(MeshSizes):
             for number, limit in between:
                 self.sources[number].append(limit)
             mesh = self.mesh(1)
-            if 4 * sum(edge.elements or 0 for edge in mesh.boundary.edges) > most:
+            if 4 * sum(edge.elements or 0 for edge in mesh.edges) > most:
                 return coarse
             coarse = solved(mesh)
         return coarse
@@ -244,11 +244,8 @@ def _around(away: Array, length: float) -> Array:
 
 def _stretch(answer: Solved, element: int) -> tuple[float, float]:
     """Fractions of its edge where an element begins and ends."""
-    mesh = answer.mesh
-    first = int(np.flatnonzero(mesh.edge == mesh.edge[element])[0])
-    edge = answer.body.problem.edge(mesh.edge_names[mesh.edge[element]])
-    ends = edge.breakpoints(answer.body.problem.mesh.refine)
-    return float(ends[element - first]), float(ends[element - first + 1])
+    low, _, high = answer.mesh.fractions[element].tolist()
+    return low, high
 
 
 def _middles(answer: Solved, outline: SizedOutline) -> tuple[Array, Array]:
@@ -256,7 +253,7 @@ def _middles(answer: Solved, outline: SizedOutline) -> tuple[Array, Array]:
     positions, loops = [], []
     for number, loop in enumerate(outline.loops):
         for edge in loop.edges:
-            ends = answer.body.problem.edge(edge.name).breakpoints(answer.body.problem.mesh.refine)
+            ends = answer.mesh.ends_on(edge.name)
             positions.append(loop.start_of[edge.name] + edge.length * (ends[:-1] + ends[1:]) / 2)
             loops.append(np.full(len(ends) - 1, number))
     return np.concatenate(positions), np.concatenate(loops)

@@ -44,7 +44,7 @@ class MeshSizes:
     @classmethod
     def of(cls, problem: Problem) -> Self:
         """Begin with the geometry, the surfaces, and stated elements; `ProblemError` if these alone are too many."""
-        stated = sum(edge.elements or 0 for edge in problem.boundary.edges)
+        stated = sum(edge.elements or 0 for edge in problem.edges)
         if (most := MOST_UNKNOWNS // UNKNOWNS) < stated:
             message = (
                 f"{stated} elements are stated, and a mesh that is found has at most {most}; state fewer, or elements "

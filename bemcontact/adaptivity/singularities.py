@@ -144,7 +144,7 @@ def _growth(difference: MeshDifference, place: ContactPlace) -> float:
     """Largest pressure beside a place on the fine mesh over that on the coarse one; 1 where it is not high."""
     coarse, (one, two) = difference.coarse, difference.pair
     elements = elements_at(coarse, coarse.run(place.run), place.position)
-    zone = [*coarse.body.problem.contact_zones].index(place.zone)
+    zone = [*coarse.body.problem.zones].index(place.zone)
     low = float(one.pressure[zone, elements].max())
     high = float(two.pressure[zone, np.concatenate([2 * elements, 2 * elements + 1])].max())
     pressed = coarse.weights * (one.pressure[zone] > 0)
@@ -179,7 +179,7 @@ def _rise(difference: MeshDifference, place: ContactPlace) -> float:
     """What the wedge and its tractions add to the peak between the fine mesh and a corner that is `SHARP`."""
     fine, answer = difference.fine, difference.pair[1]
     run = fine.run(place.run)
-    zone = [*fine.body.problem.contact_zones].index(place.zone)
+    zone = [*fine.body.problem.zones].index(place.zone)
     elements = elements_at(fine, run, place.position)
     at, peak = float(answer.pressure[zone, elements].max()), float(answer.pressure[zone].max())
     if not at > 0:
@@ -188,7 +188,7 @@ def _rise(difference: MeshDifference, place: ContactPlace) -> float:
     _, length = contact_beside(run, answer.stretches[run.number], place.position)
     size = max(float(fine.weights[elements].sum(axis=1).min()) / (length or run.length), SHARP)
     if all(face.contact for face in wedge[2]) and abs(wedge[1] - np.pi) < CORNER:
-        return max(0.0, (at + _slope(fine, place.kink) * np.log(size / SHARP)) / peak - 1)
+        return max(0.0, (at + _slope(fine, place.kink, fine.body.part_of(int(elements[0]))) * np.log(size / SHARP)) / peak - 1)
     change = slow_change(*wedge, loads)
     if change is None:
         return 0.0
@@ -196,12 +196,12 @@ def _rise(difference: MeshDifference, place: ContactPlace) -> float:
     return max(0.0, sharp / peak - 1)
 
 
-def _slope(solved: Solved, kink: float) -> float:
+def _slope(solved: Solved, kink: float, part: int) -> float:
     """Growth of the pressure [p] under a blunt kink with the logarithm of the distance: E* / 2π times the angle.
 
     Johnson, "Contact Mechanics" (1985), section 5.2: p = (E*/π) cot α arcosh(a/x) under a blunt wedge.
     """
-    material = solved.body.problem.material
+    material = solved.body.problem.parts[part].material
     return 2 * material.shear_modulus / (1 - material.effective_poisson_ratio) * kink / (2 * np.pi)
 
 
@@ -223,7 +223,8 @@ def _wedge_at(
     faces = _face(answer, after, start), _face(answer, before, end)
     angle = float(np.mod(end + np.pi - start, 2 * np.pi))
     loads = complex(*answer.traction[after, 0]), complex(*answer.traction[before, 2])
-    return (start, angle, faces, problem.material.effective_poisson_ratio), loads
+    material = problem.parts[solved.body.part_of(after)].material
+    return (start, angle, faces, material.effective_poisson_ratio), loads
 
 
 def _face(answer: CaseAnswer, element: int, direction: float) -> Face:
@@ -267,7 +268,7 @@ def _corner_of_body(solved: Solved, run: ZoneRun, *, after: bool) -> bool:
 
 def _turns_of_surface(solved: Solved, run: ZoneRun) -> Iterator[tuple[float, float]]:
     """Position of each corner of the surface on a run, and how the surface turns away from the body there [rad]."""
-    surface = solved.body.problem.contact_zones[run.zone].surface
+    surface = solved.body.problem.zones[run.zone].surface
     for edge, start in zip(run.edges, run.joints, strict=False):
         for fraction, turn in surface_corners(edge, surface, at_ends=True):
             yield float(start + fraction * edge.length), turn

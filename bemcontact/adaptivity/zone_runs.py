@@ -98,14 +98,14 @@ class ZoneRun:
 def zone_runs(body: Body) -> Iterator[ZoneRun]:
     """List the unbroken pieces of all contact zones of a body on its mesh, by their numbers."""
     mesh, points, problem = body.mesh, body.points, body.problem
-    lengths, zones = mesh.lengths, [*problem.contact_zones]
+    lengths, zones = mesh.lengths, [*problem.zones]
     for number, elements in enumerate(points.elements_of_run):
         if not len(elements):
             continue  # a corner of the body that stands on a face by itself
         names = [mesh.edge_names[i] for i in dict.fromkeys(mesh.edge[elements].tolist())]
         edges = tuple(problem.edge(name) for name in names)
         closed = bool(np.isfinite(points.run_length[number]))
-        breakpoints = tuple(edge.breakpoints(problem.mesh.refine) for edge in edges)
+        breakpoints = tuple(mesh.ends_on(name) for name in names)
         outside = mesh.before[elements[0]], mesh.elements[elements[-1], 2]
         yield ZoneRun(
             number=number,

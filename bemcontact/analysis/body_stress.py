@@ -193,7 +193,7 @@ def infinite_starts(field: StressField, pressed: BoolArray) -> BoolArray:
     A surface that is the contour of a slit is curved without bound at its tip, and holds its faces there as none does.
     """
     problem, mesh = field.problem, field.mesh
-    slits = [name for name, zone in problem.contact_zones.items() if isinstance(zone.surface, DeflectedContour)]
+    slits = [name for name, zone in problem.zones.items() if isinstance(zone.surface, DeflectedContour)]
     pressed = pressed & ~np.isin(
         mesh.edge, [mesh.edge_names.index(e) for name in slits for e in problem.edges_of(name)]
     )
@@ -216,7 +216,7 @@ def _face(field: StressField, element: int, direction: float, pressed: BoolArray
     """What holds the face of a wedge with an element, from the direction of the boundary there."""
     if pressed[element]:
         return contact_face(np.exp(1j * (direction - np.pi / 2)))
-    condition = field.problem.conditions.get(field.mesh.edge_names[field.mesh.edge[element]])
+    condition = field.problem.edge_conditions.get(field.mesh.edge_names[field.mesh.edge[element]])
     given = () if condition is None else condition.displacement.given
     return Face(1.0, ("x" in given, "y" in given)) if given else FREE
 

@@ -51,13 +51,13 @@ def check(problem: Problem) -> CheckedProblem:
     return CheckedProblem(
         problem=body.problem,
         mesh=body.mesh,
-        gaps={name: body.points.gap[body.points.zone == i] for i, name in enumerate(body.problem.contact_zones)},
-        smallest_gaps={name: _smallest_gap(body, i) for i, name in enumerate(body.problem.contact_zones)},
-        free_motions=len(body.motions),
+        gaps={name: body.points.gap[body.points.zone == i] for i, name in enumerate(body.problem.zones)},
+        smallest_gaps={name: _smallest_gap(body, i) for i, name in enumerate(body.problem.zones)},
+        free_motions=sum(map(len, body.motions)),
         held_by_contact=tuple(body.seen.describe()),
         total_load=(float(x), float(y)),
         load_magnitude=float(body.pinned.total(body.factors, body.forces)),
-        notes=(*body.notes, *_idle(body), *bulging(body, BULGE * body.problem.boundary.size)),
+        notes=(*body.notes, *_idle(body), *bulging(body, BULGE * body.problem.size)),
     )
 
 
@@ -71,7 +71,7 @@ def _idle(body: Body) -> Iterator[str]:
 def _smallest_gap(body: Body, zone: int) -> float:
     """Smallest initial gap [L] of a zone at contact points and between them, on the curves of its elements."""
     problem, points, mesh = body.problem, body.points, body.mesh
-    name, surface = [*problem.contact_zones][zone], [*problem.contact_zones.values()][zone].surface
+    name, surface = [*problem.zones][zone], [*problem.zones.values()][zone].surface
     least = float(points.gap[points.zone == zone].min())
     if isinstance(surface, DeflectedContour):
         return least
@@ -91,7 +91,7 @@ def drawable(problem: Problem) -> tuple[Problem, Mesh]:
     try:
         contours(problem, mesh)
     except (ProblemError, SingularSystemError):
-        kept = {k: zone for k, zone in problem.contact_zones.items() if not isinstance(zone.surface, DeflectedContour)}
+        kept = {k: zone for k, zone in problem.zones.items() if not isinstance(zone.surface, DeflectedContour)}
         tools = {name: tool for name, tool in problem.tools.items() if kept.keys() >= {*tool.zones}}
         problem = problem.model_copy(update={"contact_zones": kept, "tools": tools, "load_cases": {}, "case": None})
     return problem, mesh
@@ -101,7 +101,7 @@ def contours(problem: Problem, mesh: Mesh) -> dict[str, tuple[Array, Array]]:
     """Deflected contours: zone -> points (N, 2) [L] of the surface opposite to all nodes, and unit normals (N, 2)."""
     surfaces = {}
     for name, displacement in deflections(problem, mesh).items():
-        surface = problem.contact_zones[name].surface
+        surface = problem.zones[name].surface
         assert isinstance(surface, DeflectedContour)
         gap, normals = surface.behind(displacement)
         surfaces[name] = mesh.nodes - gap[:, None] * normals, normals

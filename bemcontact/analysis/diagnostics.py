@@ -227,7 +227,7 @@ def long_neighbors(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
 def beyond_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     """Note contact with the straight continuation of a polyline or a spline beyond its ends."""
     points = body.points
-    for number, (name, zone) in enumerate(body.problem.contact_zones.items()):
+    for number, (name, zone) in enumerate(body.problem.zones.items()):
         if not isinstance(zone.surface, Polyline | Spline):
             continue
         pressed = body.mesh.nodes[points.node[touching & (points.zone == number)]]
@@ -243,4 +243,4 @@ def beyond_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
 
 def _zone(body: Body, point: np.intp) -> str:
     """Name of the zone of a contact point."""
-    return list(body.problem.contact_zones)[body.points.zone[point]]
+    return list(body.problem.zones)[body.points.zone[point]]

@@ -9,12 +9,11 @@ from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.arrays import Array
 from bemcontact.bem.body import Body, body_of
 from bemcontact.bem.condense import boundary_state, condense
-from bemcontact.bem.loading import Loading, ParticularSolution, particular_solution
+from bemcontact.bem.loading import Loading, ParticularSolution, particular_solutions
 from bemcontact.bem.mesh import BoundaryState, Mesh
 from bemcontact.contact.solution import Status
 from bemcontact.errors import BemContactError
 from bemcontact.formulations import complementarity
-from bemcontact.problem.conditions import Loads
 
 STEPS = 6
 """Largest dimension of the space of shapes in which the critical load is looked for."""
@@ -87,7 +86,7 @@ class ProbedBody:
         if solution.status is not Status.SOLVED:
             raise BemContactError("contact does not hold the displaced body")
         state = boundary_state(there, solution.pressure, solution.rigid_amplitudes)
-        forces = self.body.points.tributary_by_zone(len(self.body.problem.contact_zones)) @ solution.pressure
+        forces = self.body.points.tributary_by_zone(len(self.body.problem.zones)) @ solution.pressure
         return elastic_displacement(self.body, state), forces
 
     def _product(self, one: Array, other: Array) -> float:
@@ -134,13 +133,16 @@ class ProbedBody:
 
 
 def elastic_displacement(body: Body, state: BoundaryState) -> Array:
-    """Displacement (N, 2) [L] of the nodes less the free motions of the body that are nearest to it."""
+    """Displacement (N, 2) [L] of the nodes less the free motions of each body that are nearest to it."""
     mesh, displacement = body.mesh, np.zeros_like(body.mesh.nodes)
     displacement[mesh.elements] = state.displacement
-    root = np.repeat(np.sqrt(_nodal_lengths(mesh)), 2)[:, None]
-    free = body.motions.displacement(mesh.nodes).reshape(len(root), -1)
-    nearest = np.linalg.lstsq(root * free, root[:, 0] * displacement.ravel())[0]
-    return displacement - (free @ nearest).reshape(-1, 2)
+    lengths = np.sqrt(_nodal_lengths(mesh))
+    for part, motions in zip(mesh.parts, body.motions, strict=True):
+        own, root = displacement[part.nodes], np.repeat(lengths[part.nodes], 2)[:, None]
+        free = motions.displacement(part.mesh.nodes).reshape(len(root), -1)
+        nearest = np.linalg.lstsq(root * free, root[:, 0] * own.ravel())[0]
+        displacement[part.nodes] = own - (free @ nearest).reshape(-1, 2)
+    return displacement
 
 
 def _nodal_lengths(mesh: Mesh) -> Array:
@@ -156,15 +158,10 @@ def _waves(mesh: Mesh) -> Array:
     return np.sin(x @ np.array([[1.0, 0.8], [0.7, -1.1]]) + phases) + np.cos(x @ np.array([[0.4, -0.5], [0.6, 0.3]]))
 
 
-def acting_volume_loads(body: Body) -> list[Loads]:
-    """Permanent volume loads, then those of each load case."""
-    return [body.problem.loads, *(case.loads for case in body.problem.load_cases.values())]
-
-
 def displaced_body(body: Body, by: Array) -> Body:
     """The body with nodes that are displaced by (N, 2) [L], which take the loads and the places of contact along."""
     mesh = replace(body.mesh, nodes=body.mesh.nodes + by)
-    parts = [particular_solution(loads, body.problem.material, mesh) for loads in acting_volume_loads(body)]
+    parts = [particular_solutions(body.problem, mesh, loads) for loads in body.problem.volume_loads]
     loadings = [
         _taken_along(loading, part, body.mesh, mesh) for loading, part in zip(body.loadings, parts, strict=True)
     ]
@@ -174,18 +171,19 @@ def displaced_body(body: Body, by: Array) -> Body:
 def _taken_along(loading: Loading, particular: ParticularSolution, mesh: Mesh, moved: Mesh) -> Loading:
     """The loading with the same forces at displaced places."""
     traction = loading.values.traction * (mesh.tributary / moved.tributary)[..., None]
-    before = _moment(mesh, loading.values.traction - loading.particular.traction)
-    after = _moment(moved, traction - particular.traction)
+    before = _moments(mesh, loading.values.traction - loading.particular.traction, mesh.center)
+    after = _moments(moved, traction - particular.traction, moved.center)
     return replace(
         loading,
         values=replace(loading.values, traction=traction),
         particular=particular,
-        true_moment=loading.true_moment + after - before,
+        true_moments=loading.true_moments + after - before,
     )
 
 
-def _moment(mesh: Mesh, traction: Array) -> float:
-    """Moment [p L²] of tractions (m, 3, 2) about the middle of the body."""
-    x, y = np.moveaxis(mesh.nodes[mesh.elements] - mesh.center, 2, 0)
+def _moments(mesh: Mesh, traction: Array, center: Array) -> Array:
+    """Moment (b,) [p L²] on each body of tractions (m, 3, 2) about a center (2,)."""
+    x, y = np.moveaxis(mesh.nodes[mesh.elements] - center, 2, 0)
     fx, fy = np.moveaxis(mesh.tributary[..., None] * traction, 2, 0)
-    return float(np.sum(x * fy - y * fx))
+    moments = x * fy - y * fx
+    return np.array([moments[part.elements].sum() for part in mesh.parts])

@@ -8,7 +8,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import ALIKE, ContactPoints
-from bemcontact.bem.rigid_motions import FreeMotions
+from bemcontact.bem.mesh import Mesh, MeshPart
 from bemcontact.bem.surface_gaps import SAME_FACE, SurfaceGaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
@@ -77,61 +77,64 @@ def load_after(
     Pressure that balances the other levers by moving by less than a `least` part of its length may come from the mesh.
     """
     motions = body.free
-    load = _load_of_turns(gaps, motions, contact, solution, moved)
-    center = _centroid(body)
-    force, moment = _gain_of_levers(gaps, body, center)
+    load = _load_of_turns(gaps, body, contact, solution, moved)
     pressed = contact.weights_by_zone @ (solution.pressure > 0)
-    if abs(moment) <= least * pressed[pressed > 0].min() * (contact.weights @ solution.pressure):
-        return load
-    return load + motions.body.work_of(force, moment, about=center)
+    enough = least * pressed[pressed > 0].min() * (contact.weights @ solution.pressure)
+    for number, part in enumerate(body.mesh.parts):
+        center = _centroid(part.mesh)
+        force, moment = _gain_of_levers(gaps, body, part, center)
+        if abs(moment) > enough:
+            load = load + motions.of_body(number).work_of(force, moment, about=center)
+    return load
 
 
-def turn_of_body(gaps: SurfaceGaps) -> float:
-    """Turn [rad] nearest to the displacement of the boundary."""
-    mesh = gaps.outline.mesh
-    length, x, u = mesh.tributary, gaps.state.points - mesh.centroid, gaps.state.displacement
+def turn_of_body(gaps: SurfaceGaps, part: MeshPart | None = None) -> float:
+    """Turn [rad] nearest to the displacement of the boundary, or of that of one body."""
+    mesh, own = (gaps.outline.mesh, slice(None)) if part is None else part[:2]
+    length, x, u = mesh.tributary, gaps.state.points[own] - mesh.centroid, gaps.state.displacement[own]
     return float(np.sum(length * (x[..., 0] * u[..., 1] - x[..., 1] * u[..., 0])) / np.sum(length[..., None] * x**2))
 
 
-def _gain_of_levers(gaps: SurfaceGaps, body: Body, center: Array) -> tuple[Array, float]:
-    """Force (2,) and moment about the centroid (2,) that the forces gain as the body turns by θ.
+def _gain_of_levers(gaps: SurfaceGaps, body: Body, part: MeshPart, center: Array) -> tuple[Array, float]:
+    """Force (2,) and moment about the centroid (2,) that the forces on a body gain as it turns by θ.
 
     Their places turn with the body, which adds -θ Σ r·f to the moment. A prescribed pressure turns with its face: it
     keeps its moment, and its resultant has another direction. A weight acts on the centroid.
     """
-    mesh, angle = body.mesh, turn_of_body(gaps)
-    length, r = mesh.tributary[..., None], gaps.state.points - center
-    following = [edge for edge, held in _conditions(gaps) if held.pressure is not None]
-    with_face = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in following])[:, None, None]
-    prescribed = body.acting.values.traction
+    mesh, own, angle = part.mesh, part.elements, turn_of_body(gaps, part)
+    length, r = mesh.tributary[..., None], gaps.state.points[own] - center
+    following = {edge for edge, held in _conditions(gaps) if held.pressure is not None}
+    with_face = np.array([name in following for name in mesh.edge_names])[mesh.edge][:, None, None]
+    prescribed = body.acting.values.traction[own]
     normal = np.sum(prescribed * mesh.normals, axis=-1, keepdims=True) * mesh.normals
     pressure = np.where(with_face, normal, 0.0)
     x, y = np.sum(length * pressure, axis=(0, 1))
-    dead = gaps.state.traction - pressure
+    dead = gaps.state.traction[own] - pressure
     return angle * np.array([-y, x]), -angle * float(np.sum(length * dead * r))
 
 
 def _conditions(gaps: SurfaceGaps) -> Iterator[tuple[str, Condition]]:
     """Conditions of edges, permanent and of load cases."""
-    yield from gaps.problem.conditions.items()
+    yield from gaps.problem.edge_conditions.items()
     for case in gaps.problem.load_cases.values():
         yield from case.conditions.items()
 
 
-def _centroid(body: Body) -> Array:
+def _centroid(mesh: Mesh) -> Array:
     """Centroid (2,) of the area [L]."""
-    mesh = body.mesh
     x = mesh.nodes[mesh.elements] - mesh.centroid
     flux = mesh.tributary[..., None] * np.sum(x * mesh.normals, axis=-1, keepdims=True)
     return mesh.centroid + 2 / 3 * np.sum(flux * x, axis=(0, 1)) / flux.sum()
 
 
 def _load_of_turns(
-    gaps: SurfaceGaps, motions: FreeMotions, contact: CondensedContact, solution: ContactSolution, moved: Displaced
+    gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, moved: Displaced
 ) -> Array:
     """Work (j,) in free motions of what the pressure gains along the normals of the displaced places."""
-    forces = (contact.weights * solution.pressure)[:, None] * moved.turn
-    work = motions.body.work(contact.points, forces)
+    forces, motions = (contact.weights * solution.pressure)[:, None] * moved.turn, body.free
+    at, other = motions.displacement(body.mesh), body.points.opposite.node
+    work = np.tensordot(forces, at[body.points.node], axes=2)
+    work -= np.tensordot(forces[other >= 0], at[other[other >= 0]], axes=2)
     for number, name in enumerate(contact.tools.names):
         zones = [contact.zone_names.index(zone) for zone in gaps.problem.tools[name].zones]
         own = np.isin(contact.zone, zones)

@@ -42,7 +42,7 @@ def largest_stresses(body: BodyStress, whole: TriangulatedBody, pressed: BoolArr
     search = _Search(body=body, whole=whole, mirrors=_mirrors(body))
     problem, mesh = body.field.problem, body.field.mesh
     zones = {}
-    for zone in problem.contact_zones:
+    for zone in problem.zones:
         edges = [mesh.edge_names.index(edge) for edge in problem.edges_of(zone)]
         own = np.flatnonzero(pressed & np.isin(mesh.edge, edges))
         zones[zone] = search.largest(own, lambda stress: stress.max_shear, np.flatnonzero(np.isin(mesh.edge, edges)))
@@ -188,7 +188,7 @@ def _mirrors(body: BodyStress) -> BoolArray:
     problem, mesh = body.field.problem, body.field.mesh
     result = np.zeros(len(mesh.elements), bool)
     for number, name in enumerate(mesh.edge_names):
-        condition, own = problem.conditions.get(name), mesh.edge == number
+        condition, own = problem.edge_conditions.get(name), mesh.edge == number
         if condition is None or len(condition.displacement.given) != 1 or condition.traction.given:
             continue
         across = mesh.normals[own][..., "xy".index(condition.displacement.given[0])]

@@ -8,13 +8,14 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.analysis.diagnostics import points_in
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, IntArray
 from bemcontact.assessment.footprint import Footprint
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
-from bemcontact.bem.mesh import CORNER, BoundaryState
+from bemcontact.bem.mesh import CORNER, BoundaryState, Mesh
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.problem.material import Material
 from bemcontact.problem.problem import Problem
 
 LARGE = 0.25
@@ -65,7 +66,7 @@ def linear_theory(
     i = int(np.argmax(solution.pressure))
     if where.peak is None or part[i] <= NOTICED:
         return moved
-    times = where.peak.pressure / body.problem.material.young_modulus
+    times = where.peak.pressure / _softest(body, i)
     words = (
         f"the peak pressure is {times:.2g} times Young's modulus, and strains there are about {strain[i]:.2g}: linear "
         f"theory is off by about {100 * strain[i]:.2g} % there; error bars do not include this"
@@ -80,20 +81,53 @@ def contact_strains(body: Body, boundary: BoundaryState, pressure: Array) -> tup
     surface is measured by the difference of the pressure from the least on the boundary, if that is none of tension: a
     pressure that acts all round shears nothing, however large it is.
     """
-    material, mesh = body.problem.material, body.mesh
+    points, other = body.points, body.points.opposite.node
+    strain, part = _strains_at(body, boundary, pressure, points.node)
+    facing = np.flatnonzero(other >= 0)
+    if len(facing):
+        both = zip((strain, part), _strains_at(body, boundary, pressure[facing], other[facing]), strict=True)
+        for own, its in both:
+            own[facing] = np.maximum(own[facing], its)
+    return strain, part
+
+
+def _softest(body: Body, point: int) -> float:
+    """The smaller Young's modulus of the bodies at a contact point."""
+    nodes = [body.points.node[point], body.points.opposite.node[point]]
+    return min(body.material_at(int(node)).young_modulus for node in nodes if node >= 0)
+
+
+def _strains_at(body: Body, boundary: BoundaryState, pressure: Array, nodes: IntArray) -> tuple[Array, Array]:
+    """Strains (k,) at nodes (k,) under pressure (k,), and what part (k,) they are of large ones."""
+    mesh, strain, part = body.mesh, np.zeros(len(nodes)), np.zeros(len(nodes))
+    for number, on_mesh in enumerate(mesh.parts):
+        new = np.full(len(mesh.nodes), -1)
+        new[on_mesh.nodes] = np.arange(len(on_mesh.mesh.nodes))
+        own = np.flatnonzero(new[nodes] >= 0)
+        material = body.problem.parts[number].material
+        values = boundary.points[on_mesh.elements], boundary.displacement[on_mesh.elements]
+        traction = boundary.traction[on_mesh.elements]
+        strain[own], part[own] = _strains_of(material, on_mesh.mesh, *values, traction, pressure[own], new[nodes[own]])
+    return strain, part
+
+
+def _strains_of(
+    material: Material, mesh: Mesh, points: Array, displacement: Array, traction: Array, pressure: Array, at: IntArray
+) -> tuple[Array, Array]:
+    """The same of one body, at nodes (k,) of its mesh."""
     E, nu = material.young_modulus, material.poisson_ratio
-    along, change = (values[:, 2] - values[:, 0] for values in (boundary.points, boundary.displacement))
+    along, change = (values[:, 2] - values[:, 0] for values in (points, displacement))
     length = np.hypot(*along.T)
     of_node, elements = np.zeros((2, len(mesh.nodes)))
     np.add.at(of_node, mesh.elements, ((along * change).sum(axis=1) / length**2)[:, None])
     np.add.at(elements, mesh.elements, 1.0)
-    tangential = (of_node / np.maximum(elements, 1.0))[body.points.node]
+    tangential = (of_node / np.maximum(elements, 1.0))[at]
     if material.state == "plane_strain":
         normal = -(pressure * (1 + nu) * (1 - 2 * nu) / E + nu * tangential) / (1 - nu)
     else:
         normal = -(pressure * (1 - nu**2) / E + nu * tangential)
     outward = along[:, ::-1] * (1, -1) / length[:, None]
-    least = float(-(boundary.traction.mean(axis=1) * outward).sum(axis=1).max())
+    least = float(-(traction.mean(axis=1) * outward).sum(axis=1).max())
     sheared = (pressure - max(least, 0.0)) / E
     return np.maximum(abs(normal), sheared), np.maximum(sheared / LARGE, abs(normal) / LARGE_STRAIN)
 
@@ -103,7 +137,7 @@ def _strained(
 ) -> Penetration | None:
     """Find the contact with the largest strains of those that are large on more than a small part of it."""
     pressed = contact.pressed(solution.pressure, solution.displacement)
-    found, E = list[tuple[float, int, float]](), body.problem.material.young_modulus
+    found = list[tuple[float, int, float]]()
     for interval in where.intervals:
         own = pressed & points_in(contact, interval)
         share = contact.weights[own & (part > 1)].sum() / max(contact.weights[own].sum(), np.finfo(float).tiny)
@@ -113,6 +147,7 @@ def _strained(
     if not found:
         return None
     _, i, share = max(found)
+    E = _softest(body, i)
     (x, y), zone = contact.points[i].tolist(), contact.zone_names[contact.zone[i]]
     element = body.points.element[np.flatnonzero(body.points.point == i)[0]]
     return Penetration(
@@ -185,8 +220,9 @@ def _cause(boundary: BoundaryState, turns: bool, modulus: str) -> str:
 
 
 def _modulus(problem: Problem) -> str:
-    """Young's modulus with its unit."""
-    return f"{problem.material.young_modulus:.4g} {problem.units.stress}".strip()
+    """Young's modulus of each body with its unit."""
+    moduli = dict.fromkeys(f"{part.material.young_modulus:.4g}" for part in problem.parts)
+    return f"{' and '.join(moduli)} {problem.units.stress}".strip()
 
 
 def _numbers(modulus: str) -> str:

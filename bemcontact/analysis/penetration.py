@@ -66,7 +66,7 @@ def penetration(
     """
     state, worst, notes = gaps.state, None, list[str]()
     largest = float(np.hypot(*np.moveaxis(state.displacement, 2, 0)).max())
-    allowed = tolerated(contact, largest, gaps.problem.boundary.size)
+    allowed = tolerated(contact, largest, gaps.problem.size)
     for zone in gaps.surfaces:
         found, paired = gaps.intrusion(zone), gaps.paired[zone]
         depth = float(found.depth.max())
@@ -140,7 +140,7 @@ def _crossing(loops: Sequence[Array], gaps: SurfaceGaps) -> Array | None:
 
     At the tip of a notch strains are not small: neighbors that fold there do not count.
     """
-    size = gaps.problem.boundary.size
+    size = gaps.problem.size
     tolerance = ROUND_OFF * size
     closed = [_without_details(np.vstack([points, points[:1]]), DETAIL * size) for points in loops]
     for i, line in enumerate(closed):

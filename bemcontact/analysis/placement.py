@@ -195,7 +195,7 @@ def _overhangs(
 def _allowed(gaps: SurfaceGaps, contact: CondensedContact) -> float:
     """Distance [L] that is tolerated."""
     largest = float(np.hypot(*np.moveaxis(gaps.state.displacement, 2, 0)).max())
-    return tolerated(contact, largest, gaps.problem.boundary.size)
+    return tolerated(contact, largest, gaps.problem.size)
 
 
 def _off_the_surface(

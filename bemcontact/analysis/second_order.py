@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.adaptivity.first_sizes import ACROSS, OPPOSED
-from bemcontact.analysis.displaced_body import ProbedBody, acting_volume_loads, elastic_displacement
+from bemcontact.analysis.displaced_body import ProbedBody, elastic_displacement
 from bemcontact.analysis.linear_theory import LARGE, LARGE_PART, NOTICED, Judgment, Noticed
 from bemcontact.arrays import Array, IntArray
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
-from bemcontact.bem.loading import particular_solution
+from bemcontact.bem.loading import particular_solutions
 from bemcontact.bem.mesh import BoundaryState, Mesh
 from bemcontact.errors import BemContactError
 from bemcontact.problem.conditions import Loads
@@ -46,14 +46,15 @@ def second_order(body: Body, boundary: BoundaryState, initial_gap: Array) -> Jud
     """
     mesh, every = body.mesh, np.arange(len(body.mesh.elements))
     thickness, facing, local = across(mesh)
-    slender = thickness < mesh.size / SLENDER
+    size = np.repeat([part.mesh.size for part in mesh.parts], [len(part.mesh.elements) for part in mesh.parts])
+    slender = thickness < size / SLENDER
     if not slender.any():
         return Judgment()
     moved = np.hypot(*elastic_displacement(body, boundary)[mesh.elements[:, 1]].T) / thickness * slender
     stressed = boundary.displacement - thermal_displacement(body)
     strain = axial_strain(mesh, stressed, every, np.zeros(len(every)))
     middle = (strain + axial_strain(mesh, stressed, facing, local)) / 2
-    strut = np.where(slender, -middle / (EULER * (thickness / mesh.size) ** 2), 0.0)
+    strut = np.where(slender, -middle / (EULER * (thickness / size) ** 2), 0.0)
     motion, compressed, strained = (_beyond_details(mesh, values) for values in (moved, strut, abs(strain)))
     if motion <= MOVED and compressed <= CHANGED:
         return Judgment()
@@ -71,7 +72,7 @@ def _probed(body: Body, boundary: BoundaryState, moves: bool, strut: float, stra
             displacements, forces, i = probed.change()
             given = probed.loads > 0 or not probed.forces.any()
             stiffer = 1 / displacements.displacement if given else forces.force
-            of_force, zone = abs(forces.force - 1) if given else 0.0, [*body.problem.contact_zones][i]
+            of_force, zone = abs(forces.force - 1) if given else 0.0, [*body.problem.zones][i]
         if strut > NOTICED:
             part = min(strut, probed.critical(PROBE * float(across(body.mesh)[0].min())))
     except BemContactError:
@@ -79,7 +80,7 @@ def _probed(body: Body, boundary: BoundaryState, moves: bool, strut: float, stra
     found = SecondOrder(
         stiffer=stiffer if _off(stiffer) > strain else 1.0, of_force=of_force if of_force > strain else 0.0, zone=zone,
         part=part if part * EULER > strain else 0.0, guided=guided,
-        pressed=any(condition.pressure is not None for condition in body.problem.conditions.values()),
+        pressed=any(condition.pressure is not None for condition in body.problem.edge_conditions.values()),
     )  # fmt: skip
     return _judged(boundary, found)
 
@@ -184,15 +185,16 @@ def _wrong(stiffer: float) -> str:
 def across(mesh: Mesh) -> tuple[Array, IntArray, Array]:
     """Thickness (m,) [L] at the middle of each element: the distance through the body to the boundary that faces it.
 
-    It is infinite where none does. Then the element that faces it (m,), and the local coordinate (m,) of the place
+    It is infinite where none does. Each body is looked at by itself. Then the element that faces it (m,), and the local coordinate (m,) of the place
     opposite, which may be in the next element.
     """
     at, normals, tangents = mesh.nodes[mesh.elements[:, 1]], mesh.normals[:, 1], mesh.tangents[:, 1]
     thickness, facing, local = np.full(len(at), np.inf), np.arange(len(at)), np.zeros(len(at))
+    of_part = np.repeat(np.arange(len(mesh.parts)), [len(part.mesh.elements) for part in mesh.parts])
     for i, (place, normal) in enumerate(zip(at, normals, strict=True)):
         away = place - at
         inward, distance = away @ normal, np.hypot(*away.T)
-        faces = (inward > 0) & (inward >= ACROSS * distance) & (normals @ normal < OPPOSED)
+        faces = (inward > 0) & (inward >= ACROSS * distance) & (normals @ normal < OPPOSED) & (of_part == of_part[i])
         if faces.any():
             j = facing[i] = np.argmin(np.where(faces, distance, np.inf))
             thickness[i] = distance[j]
@@ -204,8 +206,10 @@ def thermal_displacement(body: Body) -> Array:
     """Displacement (m, 3, 2) [L] by which the heat that acts expands a free body."""
     parts = [
         factor
-        * particular_solution(Loads(temperature=loads.temperature), body.problem.material, body.mesh).displacement
-        for factor, loads in zip(body.factors.tolist(), acting_volume_loads(body), strict=True)
+        * particular_solutions(
+            body.problem, body.mesh, [Loads(temperature=item.temperature) for item in loads]
+        ).displacement
+        for factor, loads in zip(body.factors.tolist(), body.problem.volume_loads, strict=True)
     ]
     return np.sum(parts, axis=0)[body.mesh.elements]
 

@@ -13,7 +13,7 @@ def bulging(body: Body, least: float, reach: float = np.inf) -> Iterator[str]:
 
     `reach` [L] is the distance from contact points beyond which a bulge does not matter.
     """
-    for number, (name, zone) in enumerate(body.problem.contact_zones.items()):
+    for number, (name, zone) in enumerate(body.problem.zones.items()):
         if not isinstance(zone.surface, Spline):
             continue
         nodes = body.mesh.nodes[body.points.node[body.points.zone == number]]

@@ -25,6 +25,8 @@ from bemcontact.bem.rigid_motions import (
 from bemcontact.checks.memory import ensure_memory
 from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, ProblemError
+from bemcontact.problem.body_surface import BodySurface, BodyZone
+from bemcontact.problem.material import Material
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import Circle, DeflectedContour
 from bemcontact.problem.visibility import zone_edges
@@ -62,8 +64,8 @@ class Body:
     outline : the curves under the elements, as drawn
     loadings : 1 + c, the permanent loading, then the addition of each load case
     tools : rigid surfaces that move
-    motions : all rigid motions of the body that the conditions leave free
-    seen : motions of body and tools, and combinations, that move contact points along the rigid normals
+    motions : of each elastic body, all rigid motions that the conditions leave free
+    seen : motions of bodies and tools, and combinations, that move contact points along the rigid normals
     unseen : the other free motions, which change no gap
     """
 
@@ -73,9 +75,24 @@ class Body:
     points: ContactPoints
     loadings: tuple[Loading, ...]
     tools: PlacedTools
-    motions: RigidMotions
+    motions: tuple[RigidMotions, ...]
     seen: FreeMotions
     unseen: FreeMotions
+
+    @cached_property
+    def shear_moduli(self) -> Array:
+        """Shear modulus (m,) [p] of the body of each element."""
+        moduli = [part.material.shear_modulus for part in self.problem.parts]
+        return np.repeat(moduli, [len(part.mesh.elements) for part in self.mesh.parts])
+
+    def material_at(self, node: int) -> Material:
+        """Material of the elastic body with a node."""
+        element = node if node < len(self.mesh.elements) else node - len(self.mesh.elements)
+        return self.problem.parts[self.part_of(element)].material
+
+    def part_of(self, element: int) -> int:
+        """Number of the elastic body of an element."""
+        return int(self.mesh.part[element]) if len(self.mesh.parts) > 1 else 0
 
     @cached_property
     def free(self) -> FreeMotions:
@@ -98,7 +115,7 @@ class Body:
 
         It is that on the exact curves: the mesh does not decide whether large loads balance.
         """
-        on_body = np.column_stack([loading.true_work(self.mesh, motions.body) for loading in self.loadings])
+        on_body = np.column_stack([loading.true_work(self.mesh, motions) for loading in self.loadings])
         work = on_body + motions.tools.T @ self.tools.force
         unit = np.eye(len(self.loadings))
         total = [self.pinned.total(alone, self.tools.force * alone) for alone in unit]
@@ -111,10 +128,10 @@ class Body:
         return Pinned(
             motions=tuple(f"{motions.who(j)} against the {motions.way(j)}" for j in range(len(motions))),
             turns=np.array([motions.turns(j) for j in range(len(motions))], bool),
-            load=np.column_stack([item.true_work(self.mesh, motions.body) for item in self.loadings]),
+            load=np.column_stack([item.true_work(self.mesh, motions) for item in self.loadings]),
             tools=motions.tools,
             magnitude=np.array([item.magnitude(self.mesh) for item in self.loadings]),
-            length=self.motions.radius,
+            length=motions.radius,
         )
 
     @cached_property
@@ -124,7 +141,11 @@ class Body:
 
     def normal_motion(self, motions: FreeMotions) -> Array:
         """R (n, k): change of the gaps in free motions."""
-        return motions.body.along_normals(self.points) + self.tools.motions @ motions.tools
+        changes = self.tools.motions @ motions.tools
+        for number, part in enumerate(self.mesh.parts):
+            pressures = self.points.unit_pressures(part)
+            changes += motions.of_body(number).gap_changes(pressures, part.mesh, len(self.points))
+        return changes
 
     @cached_property
     def seen_motion(self) -> Array:
@@ -170,8 +191,12 @@ class Body:
             f"the {motion} moves no contact point and has no load: it is held at zero"
             for motion in self.unseen.describe()
         )
-        material = self.problem.material
-        stated = self.problem.units.doubts(material.young_modulus, material.poisson_ratio)
+        materials = [part.material for part in self.problem.parts]
+        stated = dict.fromkeys(
+            doubt
+            for material in materials
+            for doubt in self.problem.units.doubts(material.young_modulus, material.poisson_ratio)
+        )
         return (*_left_out(self.problem), *self._wedges(), *at_zero, *stated)
 
     def _wedges(self) -> Iterator[str]:
@@ -181,7 +206,7 @@ class Body:
         part = np.hypot(*free.T)
         for i in np.flatnonzero(part < WEDGE).tolist():
             x, y = self.mesh.nodes[points.node[i]].tolist()
-            zone = [*self.problem.contact_zones][points.zone[i]]
+            zone = [*self.problem.zones][points.zone[i]]
             yield (
                 f"({x:.5g}, {y:.5g}) is held nearly along the normal of the surface of '{zone}', but for "
                 f"{np.degrees(np.arcsin(part[i])):.2g} degrees: it slides into a wedge, where pressure has no bound; "
@@ -195,8 +220,8 @@ def _ensure_before_surfaces(problem: Problem, mesh: Mesh) -> None:
     A tool may be there before it is displaced.
     """
     with_tools = {zone for tool in problem.tools.values() for zone in tool.zones}
-    for name, zone in problem.contact_zones.items():
-        if isinstance(zone.surface, DeflectedContour) or name in with_tools:
+    for name, zone in problem.zones.items():
+        if isinstance(zone.surface, DeflectedContour | BodySurface) or name in with_tools:
             continue
         gap = zone.surface.closest(mesh.nodes).gap
         pressed_in = isinstance(zone.surface, Circle) and -gap.min() < PRESSED_IN * mesh.size
@@ -211,9 +236,11 @@ def _ensure_before_surfaces(problem: Problem, mesh: Mesh) -> None:
 
 def _left_out(problem: Problem) -> Iterator[str]:
     """Note edges with conditions that can see the surface of a zone that names no edges."""
-    for name, zone in problem.contact_zones.items():
+    for name, zone in problem.zones.items():
         touching = problem.edges_of(name)
-        others = [edge for edge in zone_edges(problem.boundary, zone, ()) if edge not in touching]
+        if isinstance(zone, BodyZone):
+            continue
+        others = [edge for edge in zone_edges(problem.edges, zone, ()) if edge not in touching]
         if others:
             names, it = ", ".join(f"'{edge}'" for edge in others), "it has" if len(others) == 1 else "they have"
             yield f"{names} can see the surface of '{name}' and may not touch it, because {it} a condition"
@@ -234,8 +261,12 @@ def body_of(problem: Problem) -> Body:
     added = [loading.values for loading in cases]
     points = contact_points(outline, permanent.values, deflections(problem, mesh), added)
     tools = placed_tools(problem, points)
-    motions = free_rigid_motions(mesh, permanent.values.displacement_given)
-    seen, unseen = free_motions(points, motions, tools)
+    motions = tuple(
+        free_rigid_motions(part.mesh, permanent.values.displacement_given[part.nodes], mesh.size / 2)
+        for part in mesh.parts
+    )
+    names = tuple(f"the body '{part.name}'" for part in problem.parts) if problem.several else (BODY,)
+    seen, unseen = free_motions(points, motions, tools, names)
     body = Body(
         problem=problem, mesh=mesh, outline=outline, points=points, loadings=(permanent, *cases), tools=tools,
         motions=motions, seen=seen, unseen=unseen,
@@ -274,7 +305,7 @@ def _ensure_room_where_held(body: Body) -> None:
     position, given = body.tools.position @ body.factors, body.acting.values.displacement
     gap = held.gap + np.sum(held.normals * given[held.node], axis=1)
     for number, tool in enumerate(problem.tools.values()):
-        own = np.isin(held.zone, [[*problem.contact_zones].index(zone) for zone in tool.zones])
+        own = np.isin(held.zone, [[*problem.zones].index(zone) for zone in tool.zones])
         arm = body.mesh.nodes[held.node] - body.tools.point[number]
         x, y, turn = position[3 * number : 3 * number + 3]
         moved = np.array([x, y]) + turn * np.column_stack([-arm[:, 1], arm[:, 0]])
@@ -288,7 +319,7 @@ def _ensure_room_where_held(body: Body) -> None:
             f"where conditions hold the body, at ({x:.5g}, {y:.5g}), this surface is {inside} inside it: no pressure "
             "makes room there; move the surface, or hold the body elsewhere, or end the contact edge before this place"
         )
-        zone = [*problem.contact_zones][held.zone[worst]]
+        zone = [*problem.zones][held.zone[worst]]
         raise ProblemError(Issue(path=("contact_zones", zone, "surface"), message=message))
 
 
@@ -335,7 +366,7 @@ def deflections(problem: Problem, mesh: Mesh) -> dict[str, Array]:
 
     `ProblemError` if the conditions of a contour contradict each other, or leave the body free to move.
     """
-    surfaces = {name: zone.surface for name, zone in problem.contact_zones.items()}
+    surfaces = {name: zone.surface for name, zone in problem.zones.items()}
     contours = {name: surface for name, surface in surfaces.items() if isinstance(surface, DeflectedContour)}
     if not contours:
         return {}

@@ -4,15 +4,17 @@ The method also covers bodies that are held by contact. Their free rigid motions
 equilibrium is exact: ℓ = J R, and the load is the work of the applied loads in the free motions.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, IntArray
 from bemcontact.bem.body import Body, body_of, ensure_held
-from bemcontact.bem.mesh import BoundaryState
+from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.loading import combined
+from bemcontact.bem.mesh import BoundaryState, MeshPart
 from bemcontact.bem.response import Response
 from bemcontact.bem.rigid_motions import all_rigid_motions
 from bemcontact.bem.solution import solve_system
@@ -24,21 +26,40 @@ from bemcontact.problem.problem import Problem
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class CondensedPart:
+    """One elastic body, condensed by itself.
+
+    Parameters
+    ----------
+    mesh : of the body, with its place in the whole mesh
+    system : its equations
+    response : solutions for each loading alone, of which there are 1 + c, and for its unit pressures, dimensionless
+    """
+
+    mesh: MeshPart
+    system: System
+    response: Response
+
+    def state(self, pressure: Array, factors: Array) -> Array:
+        """Solution of its equations for pressures (n,) [p] at all contact points and factors (1 + c,) of loadings."""
+        own = pressure[self.system.points.number] / self.system.stress
+        return self.response.combined(np.append(factors, own))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Condensation:
-    """A condensed body, with the response from which the whole boundary follows for a pressure.
+    """Condensed bodies, with the responses from which the whole boundary follows for a pressure.
 
     Parameters
     ----------
     body : Body
-    system : System
-    response : solutions for each loading alone, of which there are 1 + c, and for unit pressures, dimensionless
+    parts : the elastic bodies, each condensed by itself
     contact : CondensedContact
     gauge : Gauge
     """
 
     body: Body
-    system: System
-    response: Response
+    parts: tuple[CondensedPart, ...]
     contact: CondensedContact
     gauge: Gauge
 
@@ -50,7 +71,7 @@ class Condensation:
         body = replace(self.body, problem=problem)
         ensure_held(body)
         contact = self.contact.with_factors(problem.factors())
-        named = replace(contact, name=problem.title, notes=(*body.notes, *self.system.notes))
+        named = replace(contact, name=problem.title, notes=_notes(body, self.parts))
         return replace(self, body=body, contact=named)
 
     @property
@@ -80,63 +101,79 @@ class CondensedTogether:
     Parameters
     ----------
     bodies : with equal `matrix_of`
-    system : with the loadings of all of them
-    response : solutions for each of these loadings and for unit pressures, dimensionless
+    parts : with the loadings of all of them
     """
 
     bodies: Sequence[Body]
-    system: System
-    response: Response
+    parts: tuple[CondensedPart, ...]
 
     def __getitem__(self, number: int) -> Condensation:
         """Return one of the condensed bodies."""
         body = self.bodies[number]
         if len(self.bodies) == 1:
-            return _condensation(body, self.system, self.response)
-        start, loads = sum(len(other.loadings) for other in self.bodies[:number]), len(self.system.loadings)
-        own = [*range(start, start + len(body.loadings)), *range(loads, self.response.columns)]
-        system = replace(self.system, mesh=body.mesh, points=body.points, motions=body.motions, loadings=body.loadings)
-        return _condensation(body, system, self.response.of_columns(own))
+            return _condensation(body, self.parts)
+        start, count = sum(len(other.loadings) for other in self.bodies[:number]), len(body.loadings)
+        loads = sum(len(other.loadings) for other in self.bodies)
+        parts = []
+        for part, motions in zip(self.parts, body.motions, strict=True):
+            own = [*range(start, start + count), *range(loads, part.response.columns)]
+            system = replace(
+                part.system, points=body.points.unit_pressures(part.mesh), motions=motions,
+                loadings=part.system.loadings[start : start + count],
+            )  # fmt: skip
+            parts.append(replace(part, system=system, response=part.response.of_columns(own)))
+        return _condensation(body, tuple(parts))
 
 
 def condense_together(bodies: Sequence[Body]) -> CondensedTogether:
     """Condense bodies whose `matrix_of` is equal; `SingularSystemError` if the equations have no unique solution."""
-    first = bodies[0]
-    system = System(
-        mesh=first.mesh, material=first.problem.material, points=first.points, motions=first.motions,
-        loadings=[loading for body in bodies for loading in body.loadings],
-    )  # fmt: skip
-    return CondensedTogether(bodies=bodies, system=system, response=solve_system(system))
+    first, parts = bodies[0], []
+    loadings = [loading for body in bodies for loading in body.loadings]
+    for stated, on_mesh, motions in zip(first.problem.parts, first.mesh.parts, first.motions, strict=True):
+        system = System(
+            mesh=on_mesh.mesh, material=stated.material, points=first.points.unit_pressures(on_mesh), motions=motions,
+            loadings=[loading.of_part(on_mesh) for loading in loadings],
+        )  # fmt: skip
+        parts.append(CondensedPart(mesh=on_mesh, system=system, response=solve_system(system)))
+    return CondensedTogether(bodies=bodies, parts=tuple(parts))
 
 
 def matrix_of(body: Body) -> tuple[object, ...]:
     """What the matrix of a body and its unit pressures depend on; equal for bodies that can be condensed together."""
     values, points = body.loadings[0].values, body.points
     arrays = (
-        body.mesh.nodes, body.mesh.elements, body.mesh.edge, values.displacement_given, values.traction_unknown,
-        points.node, points.normals, points.element, points.local, points.point,
+        body.mesh.nodes, body.mesh.elements, body.mesh.edge, body.mesh.part, values.displacement_given,
+        values.traction_unknown, points.node, points.normals, points.element, points.local, points.point,
+        points.opposite.node, points.opposite.traction,
     )  # fmt: skip
-    return (body.problem.material.model_dump_json(), *((array.shape, array.tobytes()) for array in arrays))
+    materials = [part.material.model_dump_json() for part in body.problem.parts]
+    return (*materials, *((array.shape, array.tobytes()) for array in arrays))
 
 
-def _condensation(body: Body, system: System, response: Response) -> Condensation:
-    """The condensed body, from the response to its loadings and unit pressures."""
+def _notes(body: Body, parts: Sequence[CondensedPart]) -> tuple[str, ...]:
+    """Decisions that a user should know."""
+    return (*body.notes, *dict.fromkeys(note for part in parts for note in part.system.notes))
+
+
+def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
+    """The condensed bodies, from the responses to their loadings and unit pressures."""
     points, tools, s = body.points, body.tools, len(body.loadings)
-    observed = _observe(system, response)
-    prescribed = [np.sum(points.normals * item.values.displacement[points.node], axis=1) for item in body.loadings]
+    compliance, free_displacement = np.zeros((len(points), len(points))), np.zeros((len(points), s))
+    for part in parts:
+        _observe(part, compliance, free_displacement)
     R, load = body.seen_motion, body.seen_load
-    own = np.any(body.seen.body.coefficients, axis=1)
+    own = np.any(body.seen.of_bodies, axis=1)
     gauge = fix_gauge(
         MotionAlgebra(rigid_motions=R[:, own], weights=points.tributary, motion_load=load[own]),
-        compliance=observed[:, s:] * (system.length / system.stress),
-        free_displacement=observed[:, :s] * system.length + np.column_stack(prescribed),
+        compliance=compliance,
+        free_displacement=free_displacement,
     )
     on_body = np.where(own[:, None], load, 0.0)
     contact = CondensedContact(
         name=body.problem.name,
-        zone_names=tuple(body.problem.contact_zones),
+        zone_names=tuple(body.problem.zones),
         units={"length": body.problem.units.length, "force": body.problem.units.force},
-        notes=(*body.notes, *system.notes),
+        notes=_notes(body, parts),
         motion_names=body.seen.describe(),
         motion_arms=body.seen.arms,
         points=body.mesh.nodes[points.node],
@@ -151,7 +188,7 @@ def _condensation(body: Body, system: System, response: Response) -> Condensatio
         motion_load=load[:, 0],
         initial_gap=points.gap + tools.motions @ tools.position[:, 0],
         weights=points.tributary,
-        zone_weights=points.tributary_by_zone(len(body.problem.contact_zones)),
+        zone_weights=points.tributary_by_zone(len(body.problem.zones)),
         consistent_weights=points.consistent,
         element_length_weights=points.element_length,
         held_arc=points.held_arc,
@@ -175,17 +212,20 @@ def _condensation(body: Body, system: System, response: Response) -> Condensatio
             factors=np.zeros(s - 1),
         ),
     )
-    return Condensation(body=body, system=system, response=response, contact=contact, gauge=gauge).acting()
+    return Condensation(body=body, parts=parts, contact=contact, gauge=gauge).acting()
 
 
-def _observe(system: System, response: Response) -> Array:
-    """Normal displacement (n, s + n) over L0 at the contact points due to the unknowns."""
-    points = system.points
-    result = np.zeros((response.columns, len(points)))
-    for normal, column in zip(points.normals.T, system.unknowns.displacement[points.node].T, strict=True):
-        free = np.flatnonzero(column >= 0) if column.min() < 0 else slice(None)
-        result[:, free] += normal[free] * response.rows(column[free]).T
-    return result.T
+def _observe(part: CondensedPart, compliance: Array, free_displacement: Array) -> None:
+    """Add what a body does to all gaps: by unit pressures (n, n) [L/p], and by each loading (n, s) [L]."""
+    system, response = part.system, part.response
+    points, s = system.points, len(system.loadings)
+    result = np.zeros((response.columns, len(points.gap)))
+    for change, column in zip(points.change.T, system.unknowns.displacement[points.node].T, strict=True):
+        free = np.flatnonzero(column >= 0) if column.min(initial=0) < 0 else slice(None)
+        result[:, free] += change[free] * response.rows(column[free]).T
+    given = [np.sum(points.change * item.values.displacement[points.node], axis=1) for item in system.loadings]
+    np.add.at(free_displacement, points.gap, result[:s].T * system.length + np.column_stack(given))
+    np.add.at(compliance, (points.gap[:, None], points.number), result[s:].T * (system.length / system.stress))
 
 
 def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> BoundaryState:
@@ -211,49 +251,80 @@ def boundary_change(condensation: Condensation, pressure: Array, rigid_amplitude
 def boundary_columns(condensation: Condensation) -> tuple[Array, Array]:
     """Displacement (N, 2, 1 + c + n) [L] and traction (m, 3, 2, …) [p] of each loading and each unit pressure alone.
 
-    Their sum with factors and pressures is the state of the boundary but for a rigid motion of the body.
+    Their sum with factors and pressures is the state of the boundary but for rigid motions of the bodies.
     """
-    system, loadings, points = condensation.system, condensation.body.loadings, condensation.body.points
-    scale = np.append(np.ones(len(loadings)), np.full(len(points), 1 / system.stress))
-    z = condensation.response.combined(np.diag(scale)).T
-    states = [system.fields(own, loading) for own, loading in zip_longest(z, loadings)]
-    displacement, traction = (np.stack(parts, axis=-1) for parts in zip(*states, strict=True))
-    for axis, normal in enumerate(points.normals.T):
-        column = len(loadings) + points.point
-        np.add.at(traction[:, :, axis], (points.element, points.local, column), normal[points.point])
+    body, loads = condensation.body, len(condensation.body.loadings)
+    columns, mesh = loads + len(body.points), body.mesh
+    displacement, traction = np.zeros((*mesh.nodes.shape, columns)), np.zeros((*mesh.elements.shape, 2, columns))
+    for part in condensation.parts:
+        system, number = part.system, np.append(np.arange(loads), loads + part.system.points.number)
+        scale = np.append(np.ones(loads), np.full(len(system.points), 1 / system.stress))
+        z = part.response.combined(np.diag(scale)).T
+        for own, loading, column in zip_longest(z, system.loadings, number.tolist()):
+            u, t = system.fields(own, loading)
+            displacement[part.mesh.nodes, :, column], traction[part.mesh.elements, :, :, column] = u, t
+    for element, local, point, vectors in _pressed(body.points):
+        for axis in (0, 1):
+            np.add.at(traction[:, :, axis], (element, local, loads + point), vectors[:, axis])
     return displacement, traction
+
+
+def _pressed(points: ContactPoints) -> Iterator[tuple[IntArray, IntArray, IntArray, Array]]:
+    """(Element, local node) pairs (q,), points (q,) whose pressure they carry, and traction (q, 2) by a unit of it.
+
+    First those of the bodies that touch, then those of the other elastic bodies.
+    """
+    other = points.opposite
+    yield points.element, points.local, points.point, points.normals[points.point]
+    yield other.element, other.local, points.point[other.share], other.traction
 
 
 def _boundary(
     condensation: Condensation, pressure: Array, rigid_amplitudes: Array, factors: Array
 ) -> tuple[Array, Array]:
     """Displacement and traction of a pressure, of amplitudes, and of the loadings by these factors, if any."""
-    body, system, gauge = condensation.body, condensation.system, condensation.gauge
-    z = condensation.response.combined(np.append(factors, pressure / system.stress))
+    body, gauge = condensation.body, condensation.gauge
     amplitudes = rigid_amplitudes.copy()
     amplitudes[: len(gauge.shift_load)] -= gauge.shift_load @ factors + gauge.shift_pressure @ pressure
-    displacement, traction = system.fields(z, body.acting if factors.any() else None)
-    displacement += body.seen.body.displacement(body.mesh.nodes) @ amplitudes
-    points = body.points
-    np.add.at(traction, (points.element, points.local), pressure[points.point, None] * points.normals[points.point])
+    displacement, traction = np.zeros_like(body.mesh.nodes), np.zeros((*body.mesh.elements.shape, 2))
+    for part in condensation.parts:
+        acting = combined(part.system.loadings, factors.tolist()) if factors.any() else None
+        u, t = part.system.fields(part.state(pressure, factors), acting)
+        displacement[part.mesh.nodes], traction[part.mesh.elements] = u, t
+    displacement += body.seen.displacement(body.mesh) @ amplitudes
+    for element, local, point, vectors in _pressed(body.points):
+        np.add.at(traction, (element, local), pressure[point, None] * vectors)
     return displacement[body.mesh.elements], traction
 
 
 def _force_balance(condensation: Condensation, traction: Array) -> float:
-    """Resultant force and moment of loads, on the exact curves, and reactions, over the sum of the magnitudes."""
-    body = condensation.body
-    mesh, acting, every = body.mesh, body.acting, all_rigid_motions(body.mesh)
-    forces = mesh.tributary[..., None] * traction
-    resultant = every.work(mesh.nodes[mesh.elements], forces - acting.forces(mesh)) + acting.true_work(mesh, every)
-    magnitude = np.hypot(forces[..., 0], forces[..., 1]).sum() + acting.particular.magnitude
-    return float(abs(resultant).max() / magnitude) if magnitude > 0 else 0.0
+    """Resultant force and moment of loads, on the exact curves, and reactions, over the sum of the magnitudes.
+
+    Of several bodies it is the largest.
+    """
+    body, largest = condensation.body, 0.0
+    mesh, acting = body.mesh, body.acting
+    for number, part in enumerate(mesh.parts):
+        own, every = part.mesh, all_rigid_motions(part.mesh)
+        forces = own.tributary[..., None] * traction[part.elements]
+        loads = own.tributary[..., None] * acting.values.traction[part.elements]
+        true = every.work_of(acting.true_forces[number], acting.true_moments[number], about=mesh.center)
+        resultant = every.work(own.nodes[own.elements], forces - loads) + true
+        magnitude = np.hypot(forces[..., 0], forces[..., 1]).sum() + acting.of_part(part).particular.magnitude
+        largest = max(largest, float(abs(resultant).max() / magnitude) if magnitude > 0 else 0.0)
+    return largest
 
 
 def _slack(condensation: Condensation, pressure: Array) -> float:
     """Border unknowns of the solution, over the sum of the magnitudes that each load and pressure contributes."""
-    scaled = np.append(condensation.factors, pressure / condensation.system.stress)
-    system = condensation.system
-    slack = condensation.response.rows(np.arange(system.unknowns.size, system.size))
+    return max(_slack_of(part, pressure, condensation.factors) for part in condensation.parts)
+
+
+def _slack_of(part: CondensedPart, pressure: Array, factors: Array) -> float:
+    """The same of one body."""
+    system = part.system
+    scaled = np.append(factors, pressure[system.points.number] / system.stress)
+    slack = part.response.rows(np.arange(system.unknowns.size, system.size))
     if len(slack) == 0:
         return 0.0
     total = abs(slack) @ abs(scaled)

@@ -1,7 +1,7 @@
 """The contact points of a mesh: pairs (zone, node) with their gaps, normals and weights."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple, Self
 
@@ -9,9 +9,10 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
-from bemcontact.bem.mesh import BoundaryValues, Mesh
+from bemcontact.bem.mesh import BoundaryValues, Mesh, MeshPart
 from bemcontact.bem.outline import Outline
 from bemcontact.errors import Issue, ProblemError
+from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.rigid_surface import DeflectedContour, RigidSurface
 from bemcontact.problem.surface_lines import Faces
 from bemcontact.problem.visibility import turned_to
@@ -24,6 +25,61 @@ SMOOTH = 0.05
 """Sine of the angle between elements below which the boundary is smooth: quadratic elements on a curve kink a bit."""
 CONSISTENT_ORDER = 12
 """Gauss points for the consistent weights."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class UnitPressures:
+    """Where unit pressures act on the mesh of one body, and where their displacement counts.
+
+    Parameters
+    ----------
+    number : (c,) of each pressure among all contact points
+    element, local, pressure : (q,) the (element, local node) pairs that carry each of these pressures
+    traction : (q, 2) there
+    node : (r,) nodes whose displacement changes a gap
+    gap : (r,) number of the point of this gap
+    change : (r, 2) of the gap by unit displacements along x and y
+    """
+
+    number: IntArray
+    element: IntArray
+    local: IntArray
+    pressure: IntArray
+    traction: Array
+    node: IntArray
+    gap: IntArray
+    change: Array
+
+    @classmethod
+    def none(cls) -> Self:
+        """No pressures, for a body that touches nothing."""
+        numbers, vectors = np.zeros(0, int), np.zeros((0, 2))
+        return cls(
+            number=numbers, element=numbers, local=numbers, pressure=numbers, traction=vectors, node=numbers,
+            gap=numbers, change=vectors,
+        )  # fmt: skip
+
+    def __len__(self) -> int:
+        """Return the number of pressures."""
+        return len(self.number)
+
+
+class Opposite(NamedTuple):
+    """The other elastic body at contact points.
+
+    Parameters
+    ----------
+    node : (n,) its node at each point; -1 where the surface is rigid
+    share : (q,) shares of points whose element faces one of the other body
+    element, local : (q,) the (element, local node) pair that this share faces
+    traction : (q, 2) there by a unit pressure: the nodal forces of both bodies are equal and opposite
+    """
+
+    node: IntArray
+    share: IntArray
+    element: IntArray
+    local: IntArray
+    traction: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,6 +108,7 @@ class ContactPoints:
     elements_of_run : elements of each piece in order; none for a corner of the body that stands on a face by itself
     zone_of_run : number of the zone of each piece
     held : nodes of the zones that are no points
+    facing : (m,) by number of the zone, element of the other elastic body opposite to each element, else -1
     """
 
     mesh: Mesh
@@ -71,15 +128,43 @@ class ContactPoints:
     elements_of_run: tuple[IntArray, ...] = ()
     zone_of_run: tuple[int, ...] = ()
     held: "HeldNodes | None" = None
+    facing: Mapping[int, IntArray] = field(default_factory=dict)
 
-    @classmethod
-    def none(cls, mesh: Mesh) -> Self:
-        """No points, for a body that touches nothing."""
-        none, numbers = np.zeros(0), np.zeros(0, int)
-        return cls(
-            mesh=mesh, node=numbers, zone=numbers, run=numbers, arc_position=none, run_length=none,
-            normals=np.zeros((0, 2)), faces=np.zeros((0, 2)), gap=none, element=numbers, local=numbers, point=numbers,
-            held_arc=np.zeros((0, 2)), held_points=np.zeros((0, 2, 2)),
+    @cached_property
+    def opposite(self) -> Opposite:
+        """The other elastic body at the points."""
+        node, facing = np.full(len(self), -1), np.full(len(self.point), -1)
+        for zone, elements in self.facing.items():
+            own = self.zone_of_share == zone
+            facing[own] = elements[self.element[own]]
+        share = np.flatnonzero(facing >= 0)
+        element, local, point = facing[share], 2 - self.local[share], self.point[share]
+        node[point] = self.mesh.elements[element, local]
+        lengths = np.bincount(point, self.mesh.tributary[element, local], len(self))
+        factor = self.tributary[point] / lengths[point]
+        return Opposite(node, share, element, local, -factor[:, None] * self.normals[point])
+
+    def unit_pressures(self, part: MeshPart) -> UnitPressures:
+        """Unit pressures on the mesh of one of the bodies."""
+        other, m = self.opposite, len(self.mesh.elements)
+        has = np.flatnonzero(other.node >= 0)
+        element, local, point = (
+            np.concatenate(both)
+            for both in (
+                (self.element, other.element), (self.local, other.local), (self.point, self.point[other.share]),
+            )
+        )  # fmt: skip
+        traction = np.concatenate([self.normals[self.point], other.traction])
+        node, gap = np.concatenate([self.node, other.node[has]]), np.concatenate([np.arange(len(self)), has])
+        change = np.concatenate([self.normals, -self.normals[has]])
+        new = np.full(len(self.mesh.nodes), -1)
+        new[part.nodes] = np.arange(len(part.mesh.nodes))
+        elements = np.arange(m)[part.elements]
+        own, seen = (element >= elements[0]) & (element <= elements[-1]), new[node] >= 0
+        number, pressure = np.unique(point[own], return_inverse=True)
+        return UnitPressures(
+            number=number, element=element[own] - elements[0], local=local[own], pressure=pressure,
+            traction=traction[own], node=new[node[seen]], gap=gap[seen], change=change[seen],
         )  # fmt: skip
 
     def __len__(self) -> int:
@@ -154,20 +239,21 @@ def contact_points(
     problem, mesh, halves = outline.problem, outline.mesh, outline.mesh.halves
     tool_of = {zone: tool for tool, stated in problem.tools.items() for zone in stated.zones}
     pieces: list[_Piece] = []
-    in_zones, has = outline.in_zones, np.zeros((len(problem.contact_zones), len(mesh.nodes)), bool)
+    in_zones, has = outline.in_zones, np.zeros((len(problem.zones), len(mesh.nodes)), bool)
     of_zone, element = np.nonzero(in_zones)
     has[of_zone[:, None], mesh.elements[element]] = True
     choice = has.sum(axis=0) > 1
     middles = mesh.elements[:, 1]
-    for number, (name, zone) in enumerate(problem.contact_zones.items()):
+    for number, (name, zone) in enumerate(problem.zones.items()):
         in_zone, faces = in_zones[number], _faces(outline, zone.surface, deflections.get(name))
+        other = isinstance(zone.surface, BodySurface) and zone.surface.elastic
         for elements, closed in _between_corners(mesh, runs(mesh, in_zone), faces):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
             gap, normals, lies = faces.along(nodes, closed=closed)
             loose = ~_held_along(normals, values.displacement_given[nodes])
             free = loose & ~(choice[nodes] & ~faces.turned(mesh, elements, closed=closed))
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
-            fixed = not closed and name not in tool_of
+            fixed = not closed and name not in tool_of and not other
             on_surface = _on_surface(mesh, (values, *cases), nodes, normals, gap)
             goes_on = _goes_on(mesh, values, elements, normals, on_surface) if fixed else (False, False)
             held = np.where(~loose & on_surface & fixed, arc, np.nan)[[0, -1]]
@@ -182,7 +268,8 @@ def contact_points(
             message = "no node of its edges is turned to the surface; give these edges more elements"
             raise ProblemError(Issue(path=("contact_zones", name, "edges"), message=message))
         pieces += _standing(mesh, number, tool_of.get(name), in_zone, faces, values.displacement_given)
-    return _joined(mesh, pieces)
+    facing = {number: mesh.facing[name] for number, name in enumerate(problem.zones) if name in mesh.facing}
+    return replace(_joined(mesh, pieces), facing=facing)
 
 
 class HeldNodes(NamedTuple):
@@ -222,7 +309,7 @@ class _NodeFaces(NamedTuple):
         return nodes
 
 
-def _faces(outline: Outline, surface: RigidSurface, deflection: Array | None) -> _NodeFaces:
+def _faces(outline: Outline, surface: RigidSurface | BodySurface, deflection: Array | None) -> _NodeFaces:
     """Faces of a surface at all nodes, or of the deflected contour."""
     if isinstance(surface, DeflectedContour):
         assert deflection is not None

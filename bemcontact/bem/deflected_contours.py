@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.contact_points import UnitPressures
 from bemcontact.bem.loading import Loading, particular_solution
 from bemcontact.bem.mesh import BoundaryValues, Mesh, boundary_values
 from bemcontact.bem.rigid_motions import free_rigid_motions
@@ -29,9 +29,10 @@ def deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: Ke
             "the contour is computed without contact; prescribe displacements that hold it"
         )
         raise ProblemError(Issue(path=(*path, "conditions"), message=message))
-    loading = Loading(values=values, particular=particular_solution(surface.loads, problem.material, mesh))
+    (part,) = problem.parts
+    loading = Loading(values=values, particular=particular_solution(surface.loads, part.material, mesh))
     system = System(
-        mesh=mesh, material=problem.material, points=ContactPoints.none(mesh), motions=motions, loadings=(loading,),
+        mesh=mesh, material=part.material, points=UnitPressures.none(), motions=motions, loadings=(loading,),
     )  # fmt: skip
     displacement, _ = system.fields(solve_system(system).combined(np.ones(1)), loading)
     return displacement
@@ -39,9 +40,8 @@ def deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: Ke
 
 def _boundary_values(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: KeyPath) -> BoundaryValues:
     """Spread the conditions of a contour over the mesh; issues of its own conditions get its key path."""
-    other = problem.model_copy(update={"conditions": problem.conditions | surface.conditions})
     try:
-        return boundary_values(other, mesh)
+        return boundary_values(problem.edge_conditions | surface.conditions, mesh)
     except ProblemError as error:
         issues = [
             replace(item, path=(*path, *item.path)) if item.path[1] in surface.conditions else item

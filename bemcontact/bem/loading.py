@@ -13,10 +13,12 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.bem import reference_element
-from bemcontact.bem.mesh import BoundaryValues, Mesh, along_curve, applied_traction, boundary_values
-from bemcontact.bem.rigid_motions import RigidMotions
+from bemcontact.bem.mesh import BoundaryValues, Mesh, MeshPart, along_curve, applied_traction, boundary_values
+from bemcontact.bem.rigid_motions import FreeMotions
 from bemcontact.errors import ProblemError
+from bemcontact.problem.bodies import Part
 from bemcontact.problem.conditions import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
+from bemcontact.problem.curves import Edge
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.material import Material
 from bemcontact.problem.problem import Problem
@@ -79,25 +81,25 @@ def particular_field(loads: Loads, material: Material, mesh: Mesh, points: Array
     )
 
 
-def true_resultant(problem: Problem, center: Array) -> tuple[Array, float]:
+def true_resultant(edges: Iterable[Edge], loads: Loads, center: Array) -> tuple[Array, float]:
     """Resultant (2,) [p L] of the body forces and its moment about the center [p L²], on the curves themselves.
 
     The center is near the body, so that coordinates far from the origin do no harm.
     """
-    if not (problem.loads.gravity or problem.loads.centrifugal):
+    if not (loads.gravity or loads.centrifugal):
         return np.zeros(2), 0.0
     area, moments = 0.0, np.zeros(2)
-    for edge in problem.boundary.edges:
+    for edge in edges:
         points, normals, lengths = along_curve(edge)
         arms = points - center
         flux = lengths * np.sum(arms * normals, axis=1)
         area += float(flux.sum()) / 2
         moments += flux @ arms / 3
     force, moment = np.zeros(2), 0.0
-    if gravity := problem.loads.gravity:
+    if gravity := loads.gravity:
         b = gravity.density * np.array(gravity.acceleration)
         force, moment = force + area * b, moment + float(moments[0] * b[1] - moments[1] * b[0])
-    if centrifugal := problem.loads.centrifugal:
+    if centrifugal := loads.centrifugal:
         density, arm = _spin(centrifugal), center - centrifugal.center
         force = force + density * (moments + area * arm)
         moment += density * float(moments[0] * arm[1] - moments[1] * arm[0])
@@ -170,22 +172,46 @@ class Loading:
     ----------
     values : prescribed displacements and tractions
     particular : a field in equilibrium with the volume loads
-    true_force, true_moment : resultant (2,) [p L] of all tractions and volume loads, and their moment about the middle
-        of the body [p L²], on the curves themselves
+    true_forces, true_moments : resultants (b, 2) [p L] of all tractions and volume loads on each body, and their
+        moments (b,) about the middle of the mesh [p L²], on the curves themselves
     """
 
     values: BoundaryValues
     particular: ParticularSolution
-    true_force: Array = field(default_factory=lambda: np.zeros(2))
-    true_moment: float = 0.0
+    true_forces: Array = field(default_factory=lambda: np.zeros((1, 2)))
+    true_moments: Array = field(default_factory=lambda: np.zeros(1))
+
+    @property
+    def true_force(self) -> Array:
+        """Resultant (2,) [p L] on all bodies."""
+        return self.true_forces.sum(axis=0)
+
+    def of_part(self, part: MeshPart) -> "Loading":
+        """The loading of one body on its own mesh, without resultants."""
+        values, particular = self.values, self.particular
+        return Loading(
+            values=BoundaryValues(
+                displacement_given=values.displacement_given[part.nodes],
+                displacement=values.displacement[part.nodes],
+                traction_unknown=values.traction_unknown[part.elements],
+                traction=values.traction[part.elements],
+            ),
+            particular=replace(
+                particular,
+                displacement=particular.displacement[part.nodes],
+                traction=particular.traction[part.elements],
+            ),
+        )
 
     def forces(self, mesh: Mesh) -> Array:
         """Forces of the prescribed tractions at each (element, local node), (m, 3, 2) [p L]."""
         return mesh.tributary[..., None] * self.values.traction
 
-    def true_work(self, mesh: Mesh, motions: RigidMotions) -> Array:
+    def true_work(self, mesh: Mesh, motions: FreeMotions) -> Array:
         """Work (k,) in rigid motions [p L] on the exact curves, to round-off: it does not depend on the mesh."""
-        return motions.work_of(self.true_force, self.true_moment, about=mesh.center)
+        each = enumerate(zip(self.true_forces, self.true_moments.tolist(), strict=True))
+        parts = (motions.of_body(i).work_of(force, moment, about=mesh.center) for i, (force, moment) in each)
+        return np.sum([*parts], axis=0)
 
     def magnitude(self, mesh: Mesh) -> float:
         """Sum of the magnitudes of all loads [p L]."""
@@ -195,12 +221,16 @@ class Loading:
 
 def permanent_loading(problem: Problem, mesh: Mesh) -> Loading:
     """The loading by the problem's own conditions and loads; `ProblemError` if these contradict at a corner."""
-    return _loading(problem, mesh, problem.conditions, problem.loads)
+    try:
+        return _loading(problem, mesh, problem.edge_conditions, problem.volume_loads[0])
+    except ProblemError as error:
+        raise ProblemError([replace(item, path=problem.condition_path(item.path)) for item in error.issues]) from None
 
 
 def case_loadings(problem: Problem, mesh: Mesh) -> list[Loading]:
     """The loading by each load case alone; `ProblemError` if it contradicts itself at a corner."""
-    return [_case_loading(problem, mesh, name, case) for name, case in problem.load_cases.items()]
+    cases = zip(problem.load_cases.items(), problem.volume_loads[1:], strict=True)
+    return [_case_loading(problem, mesh, name, case, loads) for (name, case), loads in cases]
 
 
 def combined(loadings: Sequence[Loading], factors: Sequence[float]) -> Loading:
@@ -219,8 +249,8 @@ def combined(loadings: Sequence[Loading], factors: Sequence[float]) -> Loading:
             traction=_sum(factors, (part.traction for part in parts)),
             magnitude=float(_sum(np.abs(factors), (part.magnitude for part in parts))),
         ),
-        true_force=_sum(factors, (loading.true_force for loading in loadings)),
-        true_moment=float(_sum(factors, (loading.true_moment for loading in loadings))),
+        true_forces=_sum(factors, (loading.true_forces for loading in loadings)),
+        true_moments=_sum(factors, (loading.true_moments for loading in loadings)),
     )
 
 
@@ -228,30 +258,50 @@ def _sum(factors: Iterable[float], arrays: Iterable[Array | float]) -> Array:
     return np.asarray(sum(factor * array for factor, array in zip(factors, arrays, strict=True)))
 
 
-def _loading(problem: Problem, mesh: Mesh, conditions: Mapping[str, Condition], loads: Loads) -> Loading:
-    """Spread conditions and volume loads over the mesh."""
-    acting = problem.model_copy(update={"conditions": dict(conditions), "loads": loads})
-    force, moment = true_resultant(acting, mesh.center)
-    for edge in problem.boundary.edges:
-        if edge.name in conditions and conditions[edge.name].presses:
-            points, normals, lengths = along_curve(edge)
-            forces = lengths[:, None] * applied_traction(conditions[edge.name], points, normals)
-            x, y = (points - mesh.center).T
-            force = force + forces.sum(axis=0)
-            moment += float(x @ forces[:, 1] - y @ forces[:, 0])
+def _loading(problem: Problem, mesh: Mesh, conditions: Mapping[str, Condition], loads: Sequence[Loads]) -> Loading:
+    """Spread conditions by edge, and volume loads by body, over the mesh."""
+    resultants = [
+        _resultant(part, its, conditions, mesh.center) for part, its in zip(problem.parts, loads, strict=True)
+    ]
+    forces, moments = zip(*resultants, strict=True)
     return Loading(
-        values=boundary_values(acting, mesh),
-        particular=particular_solution(loads, problem.material, mesh),
-        true_force=force,
-        true_moment=moment,
+        values=boundary_values(conditions, mesh),
+        particular=particular_solutions(problem, mesh, loads),
+        true_forces=np.array(forces),
+        true_moments=np.array(moments),
     )
 
 
-def _case_loading(problem: Problem, mesh: Mesh, name: str, case: LoadCase) -> Loading:
+def _resultant(part: Part, loads: Loads, conditions: Mapping[str, Condition], center: Array) -> tuple[Array, float]:
+    """Resultant (2,) [p L] of all loads on a body and its moment about the center [p L²]."""
+    force, moment = true_resultant(part.edges, loads, center)
+    for edge in part.edges:
+        if edge.name in conditions and conditions[edge.name].presses:
+            points, normals, lengths = along_curve(edge)
+            forces = lengths[:, None] * applied_traction(conditions[edge.name], points, normals)
+            x, y = (points - center).T
+            force = force + forces.sum(axis=0)
+            moment += float(x @ forces[:, 1] - y @ forces[:, 0])
+    return force, moment
+
+
+def particular_solutions(problem: Problem, mesh: Mesh, loads: Sequence[Loads]) -> ParticularSolution:
+    """Particular solutions of the volume loads on each body."""
+    result = ParticularSolution(
+        displacement=np.zeros_like(mesh.nodes), traction=np.zeros((*mesh.elements.shape, 2)), magnitude=0.0
+    )
+    for part, on_mesh, its in zip(problem.parts, mesh.parts, loads, strict=True):
+        own = particular_solution(its, part.material, on_mesh.mesh)
+        result.displacement[on_mesh.nodes], result.traction[on_mesh.elements] = own.displacement, own.traction
+        result = replace(result, magnitude=result.magnitude + own.magnitude)
+    return result
+
+
+def _case_loading(problem: Problem, mesh: Mesh, name: str, case: LoadCase, loads: Sequence[Loads]) -> Loading:
     """The loading by a load case; displacements that the problem prescribes and the case does not give are zero."""
     conditions: dict[str, Condition] = {}
-    for edge in {**problem.conditions, **case.conditions}:
-        held = problem.conditions[edge].displacement.given if edge in problem.conditions else ()
+    for edge in {**problem.edge_conditions, **case.conditions}:
+        held = problem.edge_conditions[edge].displacement.given if edge in problem.edge_conditions else ()
         added = case.conditions.get(edge)
         given = {axis: getattr(added.displacement, axis, None) if added else None for axis in held}
         displacement = AxisFields(**{axis: value or Field(constant=0.0) for axis, value in given.items()})
@@ -262,6 +312,6 @@ def _case_loading(problem: Problem, mesh: Mesh, name: str, case: LoadCase) -> Lo
                 pressure=added.pressure if added else None,
             )
     try:
-        return _loading(problem, mesh, conditions, case.loads)
+        return _loading(problem, mesh, conditions, loads)
     except ProblemError as error:
         raise ProblemError([replace(item, path=("load_cases", name, *item.path)) for item in error.issues]) from None

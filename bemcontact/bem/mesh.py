@@ -1,14 +1,15 @@
 """The boundary in quadratic elements, and the values that the conditions prescribe on it."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
+from bemcontact.bem.division import Division, divided
 from bemcontact.checks.attributes import PLACE, WithHints, Words
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.conditions import AxisFields, Condition, Field
@@ -38,17 +39,52 @@ class Mesh:
     elements : (m, 3) nodes [start, middle, end] of each element, loop by loop
     edge : (m,) index into `edge_names`
     edge_names : names of the edges
+    fractions : (m, 3) of the length of its edge at the nodes of each element; none of a mesh without a problem
+    part : (m,) number of the elastic body of each element, ascending; none for an only body
+    facing : (m,) by contact of two elastic bodies, element of the second body opposite to each of the first, else -1
     """
 
     nodes: Array
     elements: IntArray
     edge: IntArray
     edge_names: tuple[str, ...]
+    fractions: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    part: IntArray = field(default_factory=lambda: np.zeros(0, int))
+    facing: Mapping[str, IntArray] = field(default_factory=dict)
+
+    def ends_on(self, edge: str) -> Array:
+        """Fractions (e + 1,) of the length of an edge at the ends of its elements."""
+        own = self.fractions[self.edge == self.edge_names.index(edge)]
+        return np.append(own[:, 0], own[-1, 2])
 
     @property
     def degrees_of_freedom(self) -> int:
         """Number of unknowns, two for each node."""
         return 2 * len(self.nodes)
+
+    @cached_property
+    def parts(self) -> tuple["MeshPart", ...]:
+        """The mesh of each elastic body."""
+        if not self.part.any():
+            return (MeshPart(self, slice(None), slice(None)),)
+        return tuple(self._part(number) for number in range(self.part[-1] + 1))
+
+    def _part(self, number: int) -> "MeshPart":
+        """The mesh of one elastic body, whose elements follow one another."""
+        first, last = np.searchsorted(self.part, [number, number + 1]).tolist()
+        m, elements = len(self.elements), slice(first, last)
+        nodes = np.concatenate([np.arange(first, last), m + np.arange(first, last)])
+        new = np.full(2 * m, -1)
+        new[nodes] = np.arange(len(nodes))
+        own = np.unique(self.edge[elements])
+        mesh = Mesh(
+            nodes=self.nodes[nodes],
+            elements=new[self.elements[elements]],
+            edge=np.searchsorted(own, self.edge[elements]),
+            edge_names=tuple(self.edge_names[i] for i in own),
+            fractions=self.fractions[elements],
+        )
+        return MeshPart(mesh, elements, nodes)
 
     @cached_property
     def before(self) -> IntArray:
@@ -134,18 +170,47 @@ class Mesh:
         return reference_element.derivatives(xi) @ (nodes - nodes[:, 1:2])  # which keeps the digits of short elements
 
 
+class MeshPart(NamedTuple):
+    """The mesh of one elastic body, with its elements and nodes in the whole mesh."""
+
+    mesh: Mesh
+    elements: slice
+    nodes: slice | IntArray
+
+
 def build(problem: Problem) -> Mesh:
-    """Divide every edge into its elements; middle nodes halve the arc length of an element."""
-    starts, middles, after, edge_of = [], [], [], []
-    for loop in problem.boundary.loops:
-        first = len(edge_of)
-        for edge in loop:
-            ends = edge.breakpoints(problem.mesh.refine)
-            starts.append(edge.points(ends[:-1]))
-            middles.append(edge.points((ends[:-1] + ends[1:]) / 2))
-            edge_of += [edge.name] * (len(ends) - 1)
-        after += [*range(first + 1, len(edge_of)), first]
-    return connected(np.vstack(starts), np.vstack(middles), np.array(after), edge_of)
+    """Divide every edge into its elements.
+
+    Middle nodes halve the arc length of an element, or of that of the other body which it faces.
+    """
+    division = divided(problem)
+    starts, middles, after, edge_of, part_of = [], [], [], [], []
+    for number, part in enumerate(problem.parts):
+        for loop in part.loops:
+            first = len(edge_of)
+            for edge in loop:
+                fractions = division.fractions[edge.name]
+                starts.append(edge.points(fractions[:, 0]))
+                middles.append(edge.points(fractions[:, 1]))
+                edge_of += [edge.name] * len(fractions)
+                part_of += [number] * len(fractions)
+            after += [*range(first + 1, len(edge_of)), first]
+    mesh = connected(np.vstack(starts), np.vstack(middles), np.array(after), edge_of)
+    return replace(
+        mesh,
+        fractions=np.concatenate([division.fractions[name] for name in mesh.edge_names]),
+        part=np.array(part_of),
+        facing={contact: _facing(division, contact, mesh) for contact in division.facing},
+    )
+
+
+def _facing(division: Division, contact: str, mesh: Mesh) -> IntArray:
+    """Element (m,) of the second body of a contact opposite to each of the first, else -1."""
+    first_of = {name: int(np.argmax(mesh.edge == number)) for number, name in enumerate(mesh.edge_names)}
+    facing = np.full(len(mesh.elements), -1)
+    for edge, element, onto, opposite in division.facing[contact]:
+        facing[first_of[edge] + element] = first_of[onto] + opposite
+    return facing
 
 
 def element_curves(values: Array, count: int) -> Array:
@@ -222,8 +287,8 @@ class BoundaryState(WithHints):
     """Imbalance of the discrete equations relative to the loads; it measures the mesh."""
 
 
-def boundary_values(problem: Problem, mesh: Mesh) -> BoundaryValues:
-    """Spread the conditions over the mesh; `ProblemError` if two edges contradict each other at their common corner."""
+def boundary_values(conditions: Mapping[str, Condition], mesh: Mesh) -> BoundaryValues:
+    """Spread conditions by edge over the mesh; `ProblemError` if two of them contradict each other at a corner."""
     N, m = len(mesh.nodes), len(mesh.elements)
     values = BoundaryValues(
         displacement_given=np.zeros((N, 2), bool),
@@ -232,12 +297,12 @@ def boundary_values(problem: Problem, mesh: Mesh) -> BoundaryValues:
         traction=np.zeros((m, 3, 2)),
     )
     owner = np.full((N, 2), -1)
-    largest = _largest_displacement(problem, mesh)
+    largest = _largest_displacement(conditions, mesh)
     issues = []
     for index, name in enumerate(mesh.edge_names):
-        if name not in problem.conditions:
+        if name not in conditions:
             continue
-        condition, elements = problem.conditions[name], np.flatnonzero(mesh.edge == index)
+        condition, elements = conditions[name], np.flatnonzero(mesh.edge == index)
         nodes = np.unique(mesh.elements[elements])
         for axis, field in _given(condition.displacement):
             value = field.at(mesh.nodes[nodes])
@@ -280,10 +345,10 @@ def _at(field: Field, points: Array) -> Array:
     return field.at(points.reshape(-1, 2)).reshape(points.shape[:-1])
 
 
-def _largest_displacement(problem: Problem, mesh: Mesh) -> float:
+def _largest_displacement(conditions: Mapping[str, Condition], mesh: Mesh) -> float:
     """Largest prescribed displacement on the mesh [L]."""
     largest = 0.0
-    for name, condition in problem.conditions.items():
+    for name, condition in conditions.items():
         nodes = np.unique(mesh.elements[mesh.edge == mesh.edge_names.index(name)])
         for _, field in _given(condition.displacement):
             largest = max(largest, float(abs(field.at(mesh.nodes[nodes])).max()))

@@ -1,6 +1,6 @@
 """Places on the curves of the edges themselves, by the local coordinates of the elements on them."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -10,6 +10,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
+from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.nearest_places import nearest_places, surface_corners
 from bemcontact.problem.problem import Problem
@@ -20,6 +21,8 @@ SAMPLES = np.linspace(-1.0, 1.0, 17)
 """Local coordinates at which the boundary is compared with a surface; some are moved, see `Outline.local`."""
 NODES = [0, len(SAMPLES) // 2, -1]
 """Which of them are nodes."""
+STEPS_BACK = 4
+"""Steps from a fraction of an edge to the local coordinate: each has more digits, for middle nodes are nearly there."""
 ROUGH = 1e-7
 """Difference of the unit normals of two edges below which they meet smoothly."""
 
@@ -39,11 +42,10 @@ class Outline:
     mesh: Mesh
 
     @cached_property
-    def _elements(self) -> tuple[IntArray, Array]:
-        """Number (m,) of the edge of each element, and the fractions (m, 2) of the edge at its ends."""
-        ends = [edge.breakpoints(self.problem.mesh.refine) for edge in self.problem.boundary.edges]
-        number = np.repeat(np.arange(len(ends)), [len(item) - 1 for item in ends])
-        return number, np.concatenate([np.column_stack([item[:-1], item[1:]]) for item in ends])
+    def edges(self) -> tuple[Edge, ...]:
+        """The edges under the mesh, in its order."""
+        edges = {edge.name: edge for edge in self.problem.edges}
+        return tuple(edges[name] for name in self.mesh.edge_names)
 
     @cached_property
     def local(self) -> Array:
@@ -52,15 +54,15 @@ class Outline:
         They are `SAMPLES`, but where the boundary is nearest to a surface the next one is moved there: what is
         narrower than an element would be between them.
         """
-        of_edge, fractions = self._elements
+        of_edge, fractions = self.mesh.edge, self.mesh.fractions
         local, free = np.tile(SAMPLES, (len(of_edge), 1)), np.ones((len(of_edge), len(SAMPLES)), bool)
         free[:, NODES] = False
-        for number, edge in enumerate(self.problem.boundary.edges):
-            for name, zone in self.problem.contact_zones.items():
+        for number, edge in enumerate(self.edges):
+            for name, zone in self.problem.zones.items():
                 for place in _narrow_places(edge, zone.surface, paired=edge.name in self.problem.edges_of(name)):
                     own = np.flatnonzero(of_edge == number)
-                    element = own[min(int(np.searchsorted(fractions[own, 1], place)), len(own) - 1)]
-                    first, last = fractions[element]
+                    element = own[min(int(np.searchsorted(fractions[own, 2], place)), len(own) - 1)]
+                    first, _, last = fractions[element]
                     xi = 2 * (place - first) / (last - first) - 1
                     away = np.where(free[element] & (SAMPLES * xi > 0), np.abs(SAMPLES - xi), np.inf)
                     if away.min() < 2 * SAMPLES[-1] / NODES[1]:
@@ -75,9 +77,27 @@ class Outline:
     @cached_property
     def in_zones(self) -> BoolArray:
         """Which elements each contact zone has, (zones, m)."""
-        names, zones = self.mesh.edge_names, map(self.problem.edges_of, self.problem.contact_zones)
+        names, zones = self.mesh.edge_names, map(self.problem.edges_of, self.problem.zones)
         of_edges = np.array([[name in edges for name in names] for edges in zones], bool).reshape(-1, len(names))
-        return of_edges[:, self.mesh.edge]
+        in_zones = of_edges[:, self.mesh.edge]
+        for number, zone in enumerate(self.problem.zones):
+            if zone in self.mesh.facing:
+                in_zones[number] = self.mesh.facing[zone] >= 0
+        return in_zones
+
+    def elements_at(self, names: Sequence[str], edge: IntArray, fractions: Array) -> tuple[IntArray, Array]:
+        """Element (k,) and local coordinate (k,) at fractions (k,) of edges, by their numbers (k,) in `names`."""
+        element, mesh = np.zeros(len(edge), int), self.mesh
+        for number, name in enumerate(names):
+            own, on = np.flatnonzero(mesh.edge == mesh.edge_names.index(name)), edge == number
+            at = np.searchsorted(mesh.fractions[own, 2], fractions[on])
+            element[on] = own[np.minimum(at, len(own) - 1)]
+        first, middle, last = mesh.fractions[element].T
+        xi = 2 * (fractions - first) / (last - first) - 1
+        bend = 2 * (middle - (first + last) / 2) / (last - first)
+        for _ in range(STEPS_BACK):
+            xi = 2 * (fractions - first) / (last - first) - 1 - bend * (1 - xi**2)
+        return element, np.clip(xi, -1.0, 1.0)
 
     def places(self, elements: IntArray, xi: Array) -> Places:
         """Places at the local coordinates ξ (k, q) of elements (k,)."""
@@ -86,12 +106,13 @@ class Outline:
 
     def _on_edges(self, elements: IntArray, xi: Array, values: Callable[[Edge, Array], Array]) -> Array:
         """Values (k, q, 2) of edges by fractions of their length, at local coordinates ξ (k, q) of elements (k,)."""
-        of_edge, fractions = self._elements
-        number, (first, last) = of_edge[elements], fractions[elements].T[..., None]
+        number, (first, middle, last) = self.mesh.edge[elements], self.mesh.fractions[elements].T[..., None]
         along, result = first + (last - first) * (1 + xi) / 2, np.empty((*xi.shape, 2))
+        along += (middle - (first + last) / 2) * (1 - xi**2)  # not zero where an element faces one of another body
+        along = np.clip(along, first, last)
         for i in sorted({*number.tolist()}):
             on = number == i
-            result[on] = values(self.problem.boundary.edges[i], along[on].ravel()).reshape(-1, xi.shape[1], 2)
+            result[on] = values(self.edges[i], along[on].ravel()).reshape(-1, xi.shape[1], 2)
         return result
 
     @cached_property
@@ -119,13 +140,13 @@ class Outline:
         return np.concatenate([ends, middles]), np.concatenate([near, np.zeros(len(near))])
 
 
-def _narrow_places(edge: Edge, surface: RigidSurface, *, paired: bool) -> Iterable[float]:
+def _narrow_places(edge: Edge, surface: RigidSurface | BodySurface, *, paired: bool) -> Iterable[float]:
     """Fractions of an edge where a surface may be narrow: where it is nearest, or has a corner.
 
     A spline, for which this takes long, is looked at from the edges alone that are `paired` with it.
     """
     if isinstance(surface, Polyline):
         return (corner.fraction for corner in surface_corners(edge, surface))
-    if isinstance(surface, Circle | Plane) or (paired and isinstance(surface, Spline)):
+    if isinstance(surface, Circle | Plane) or (paired and isinstance(surface, Spline | BodySurface)):
         return nearest_places(edge.curve, surface)
     return ()

@@ -1,13 +1,13 @@
 """Rigid motions of the body and of tools that no condition prevents, those that contact sees, and their names."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.contact_points import ContactPoints, UnitPressures
 from bemcontact.bem.mesh import Mesh
 from bemcontact.problem.contact_zone import RigidTool, ToolAction
 from bemcontact.problem.problem import Problem
@@ -52,6 +52,13 @@ class RigidMotions:
         """R (n, k): the motions of contact points along the rigid normals."""
         return np.einsum("nx,nxk->nk", points.normals, self.displacement(points.mesh.nodes[points.node]))
 
+    def gap_changes(self, pressures: UnitPressures, mesh: Mesh, points: int) -> Array:
+        """R (n, k): the changes of all gaps by the motions of a body with this mesh."""
+        changes = np.zeros((points, len(self)))
+        moved = np.einsum("rx,rxk->rk", pressures.change, self.displacement(mesh.nodes[pressures.node]))
+        np.add.at(changes, pressures.gap, moved)
+        return changes
+
     def work(self, points: Array, forces: Array) -> Array:
         """Work (k,) of forces (..., 2) at points (..., 2) in each motion."""
         return np.tensordot(forces, self.displacement(points), axes=forces.ndim)
@@ -93,9 +100,12 @@ def all_rigid_motions(mesh: Mesh) -> RigidMotions:
     return RigidMotions(coefficients=np.eye(3), center=mesh.center, radius=mesh.size / 2)
 
 
-def free_rigid_motions(mesh: Mesh, prescribed: BoolArray) -> RigidMotions:
-    """Find the rigid motions that move no prescribed displacement component (N, 2); translations come first."""
-    every = all_rigid_motions(mesh)
+def free_rigid_motions(mesh: Mesh, prescribed: BoolArray, radius: float | None = None) -> RigidMotions:
+    """Find the rigid motions that move no prescribed displacement component (N, 2); translations come first.
+
+    The radius is that of the mesh if none is given.
+    """
+    every = all_rigid_motions(mesh) if radius is None else replace(all_rigid_motions(mesh), radius=radius)
     rows = every.displacement(mesh.nodes)[prescribed]
     values, vectors = _short_svd(rows)
     free = values <= HELD * max(1.0, values[0])
@@ -123,7 +133,7 @@ def echelon(basis: Array) -> Array:
 UNSEEN = 1e-9
 """Largest normal displacement at contact points, relative to the motion's own, that counts as zero."""
 BODY = "the body"
-"""Name of the body in sentences."""
+"""Name of an only body in sentences."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -164,7 +174,7 @@ class PlacedTools:
 def placed_tools(problem: Problem, points: ContactPoints) -> PlacedTools:
     """Compute the motions of the contact points with the tools of a problem."""
     tools, cases = problem.tools, problem.load_cases
-    names = tuple(problem.contact_zones)
+    names = tuple(problem.zones)
     columns, places = [np.zeros((len(points), 0))], []
     for tool in tools.values():
         place = np.array(tool.point or (0.0, 0.0))
@@ -191,14 +201,15 @@ def _components(tools: Mapping[str, RigidTool], actions: Mapping[str, ToolAction
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FreeMotions:
-    """k motions in which the body and the tools move rigidly together.
+    """k motions in which b elastic bodies and t tools move rigidly together.
 
     Parameters
     ----------
-    coefficients : (k, 3 + 3 t) x, y and rotation times radius of the body about its center, then of each tool about its
-        pole
+    coefficients : (k, 3 b + 3 t) x, y and rotation times radius of each body about its center, then of each tool about
+        its pole
+    bodies : how sentences call the bodies
     names : of the tools
-    centers : (1 + t, 2) center and poles [L]
+    centers : (b + t, 2) centers and poles [L]
     to_points : (3 t, 3 t) motion of the tools, x, y and rotation [rad/L] about their own points, from that about poles
     radius : [L]
     """
@@ -208,32 +219,47 @@ class FreeMotions:
     centers: Array
     to_points: Array
     radius: float
+    bodies: tuple[str, ...] = (BODY,)
 
     def __len__(self) -> int:
         """Return the number of motions."""
         return len(self.coefficients)
 
+    def of_body(self, number: int) -> RigidMotions:
+        """Motions of a body in each of them."""
+        return self._part(number)
+
     @property
-    def body(self) -> RigidMotions:
-        """Motions of the body in each of them."""
-        return self._part(0)
+    def of_bodies(self) -> Array:
+        """Coefficients (k, 3 b) of the bodies."""
+        return self.coefficients[:, : 3 * len(self.bodies)]
+
+    def displacement(self, mesh: Mesh) -> Array:
+        """Displacement (N, 2, k) of all nodes of a mesh in each of them."""
+        result = np.empty((*mesh.nodes.shape, len(self)))
+        for number, part in enumerate(mesh.parts):
+            result[part.nodes] = self.of_body(number).displacement(part.mesh.nodes)
+        return result
 
     @property
     def tools(self) -> Array:
         """Motions of the tools (3 t, k): x, y and rotation [rad/L] about their points, tool by tool."""
-        return self.to_points @ self.coefficients[:, 3:].T
+        return self.to_points @ self.coefficients[:, 3 * len(self.bodies) :].T
 
     def combined(self, factors: Array) -> "FreeMotions":
         """Combinations of these motions by the columns of factors (k, j)."""
         return replace(self, coefficients=factors.T @ self.coefficients)
 
     def describe(self) -> tuple[str, ...]:
-        """Describe each motion, with what moves unless it is the body alone."""
+        """Describe each motion, with what moves unless it is an only body."""
         return tuple(f"{self.way(j)}{'' if self.who(j) == BODY else f' of {self.who(j)}'}" for j in range(len(self)))
 
     def who(self, motion: int) -> str:
         """Name what moves: the body, tools, or several of them together."""
-        *others, last = (("the tool '" + self.names[part - 1] + "'") if part else BODY for part in self._moving(motion))
+        *others, last = (
+            self.bodies[part] if part < len(self.bodies) else f"the tool '{self.names[part - len(self.bodies)]}'"
+            for part in self._moving(motion)
+        )
         return f"{', '.join(others)} and {last} together" if others else last
 
     def way(self, motion: int) -> str:
@@ -268,41 +294,52 @@ class FreeMotions:
         return bool(abs(self.coefficients[motion, 2::3]).max() > UNSEEN * size)
 
     def _part(self, number: int) -> RigidMotions:
-        """Motions of the body (0) or of a tool in each of them."""
+        """Motions of a body or of a tool, which count on, in each of them."""
         its = self.coefficients[:, 3 * number : 3 * number + 3]
         return RigidMotions(coefficients=its, center=self.centers[number], radius=self.radius)
 
     def _of(self, motion: int, part: int) -> Array:
-        """Coefficients (3,) of the body (0) or a tool in one of them."""
+        """Coefficients (3,) of a body or a tool in one of them."""
         return self.coefficients[motion, 3 * part : 3 * part + 3]
 
     def _moving(self, motion: int) -> list[int]:
-        """The body (0) and tools that move in one of them."""
+        """Bodies and tools that move in one of them."""
         size = abs(self.coefficients[motion]).max()
-        return [part for part in range(1 + len(self.names)) if abs(self._of(motion, part)).max() > UNSEEN * size]
+        return [part for part in range(len(self.centers)) if abs(self._of(motion, part)).max() > UNSEEN * size]
 
 
-def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTools) -> tuple[FreeMotions, FreeMotions]:
-    """Separate the free motions of the body and of tools into those that contact sees and those that it does not see.
+def free_motions(
+    points: ContactPoints, of_bodies: Sequence[RigidMotions], tools: PlacedTools, bodies: tuple[str, ...] = (BODY,)
+) -> tuple[FreeMotions, FreeMotions]:
+    """Separate the free motions of bodies and of tools into those that contact sees and those that it does not see.
 
-    The seen motions have independent columns of R; those of the body come first, then those of tools. In the unseen
-    motions no gap changes, or body and tools move together.
+    The seen motions have independent columns of R; those of bodies come first, then those of tools. In the unseen
+    motions no gap changes, or bodies and tools move together.
     """
-    t = len(tools.names)
-    poles = tools.poles(points)
-    to_points = _to_points(tools.point - poles, of_body.radius)
-    basis = np.hstack([replace(of_body, coefficients=np.eye(3)).along_normals(points), tools.motions @ to_points])
+    t, first = len(tools.names), 3 * len(of_bodies)
+    poles, radius = tools.poles(points), of_bodies[0].radius
+    to_points = _to_points(tools.point - poles, radius)
+    changes = [
+        replace(own, coefficients=np.eye(3)).gap_changes(points.unit_pressures(part), part.mesh, len(points))
+        for own, part in zip(of_bodies, points.mesh.parts, strict=True)
+    ]
+    basis = np.hstack([*changes, tools.motions @ to_points])
     every = FreeMotions(
-        coefficients=np.zeros((0, 3 + 3 * t)),
+        coefficients=np.zeros((0, first + 3 * t)),
+        bodies=bodies,
         names=tools.names,
-        centers=np.vstack([of_body.center, poles]),
+        centers=np.vstack([*(own.center for own in of_bodies), poles]),
         to_points=to_points,
-        radius=of_body.radius,
+        radius=radius,
     )
-    held = np.hstack([of_body.coefficients, np.zeros((len(of_body), 3 * t))])
+    held = np.zeros((sum(map(len, of_bodies)), first + 3 * t))
+    row = 0
+    for number, own in enumerate(of_bodies):
+        held[row : row + len(own), 3 * number : 3 * number + 3] = own.coefficients
+        row += len(own)
     seen, unseen = _split(basis, held)
     if tools.free.any():
-        (body, lost), (loaded, idle) = (seen, unseen), _split(basis, np.eye(3 + 3 * t)[3:][tools.free])
+        (body, lost), (loaded, idle) = (seen, unseen), _split(basis, np.eye(first + 3 * t)[first:][tools.free])
         both = np.vstack([body, loaded])
         together = _null_vectors(basis @ both.T)
         apart = _null_vectors(together[: len(body)].T)
@@ -311,7 +348,7 @@ def free_motions(points: ContactPoints, of_body: RigidMotions, tools: PlacedTool
 
 
 def _counterclockwise(motions: Array) -> Array:
-    """Motions (k, 3 + 3 t) with the sense in which the first part that turns does so counterclockwise."""
+    """Motions (k, 3 b + 3 t) with the sense in which the first part that turns does so counterclockwise."""
     turns = motions[:, 2::3]
     turning = abs(turns) > UNSEEN * abs(motions).max(axis=1, initial=UNSEEN, keepdims=True)
     first = turns[np.arange(len(turns)), turning.argmax(axis=1)]

@@ -63,7 +63,7 @@ def smooth_starts(outline: Outline) -> BoolArray:
     what = [_conditions(problem, name) for name in mesh.edge_names]
     alike = np.array([[one == other for other in what] for one in what])[mesh.edge, mesh.edge[before]]
     smooth = (same | (level & alike)) & (abs(mesh.turns) < CORNER)
-    for name, zone in problem.contact_zones.items():
+    for name, zone in problem.zones.items():
         for edge in map(problem.edge, problem.edges_of(name)):
             for corner in surface_corners(edge, zone.surface, at_ends=True):
                 place = edge.points(np.array([corner.fraction]))
@@ -73,8 +73,8 @@ def smooth_starts(outline: Outline) -> BoolArray:
 
 def _conditions(problem: Problem, edge: str) -> tuple[object, ...]:
     """What acts on an edge: conditions of the problem and of its load cases, and contact zones."""
-    zones = [zone for zone in problem.contact_zones if edge in problem.edges_of(zone)]
-    return problem.conditions.get(edge), [case.conditions.get(edge) for case in problem.load_cases.values()], zones
+    zones = [zone for zone in problem.zones if edge in problem.edges_of(zone)]
+    return problem.edge_conditions.get(edge), [case.conditions.get(edge) for case in problem.load_cases.values()], zones
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

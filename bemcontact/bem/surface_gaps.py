@@ -20,6 +20,7 @@ from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import NODES, Outline
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour, Shape
 from bemcontact.problem.surface_lines import Closest, Faces, Polyline, Spline
@@ -136,9 +137,9 @@ class SurfaceGaps:
     tools: Mapping[str, Array]
 
     @property
-    def surfaces(self) -> dict[str, Shape]:
-        """Rigid surfaces by zone; a deflected contour has no gap at other places than the nodes of its own zone."""
-        zones = self.problem.contact_zones.items()
+    def surfaces(self) -> dict[str, Shape | BodySurface]:
+        """Surfaces by zone; a deflected contour has no gap at other places than the nodes of its own zone."""
+        zones = self.problem.zones.items()
         return {name: zone.surface for name, zone in zones if not isinstance(zone.surface, DeflectedContour)}
 
     @cached_property
@@ -152,12 +153,12 @@ class SurfaceGaps:
     def paired(self) -> dict[str, BoolArray]:
         """By zone, whether each element (m,) belongs to it, or to another zone with the same face there and tool."""
         tools = {name: tool for tool, stated in self.problem.tools.items() for name in stated.zones}
-        in_zones, names = self.outline.in_zones, [*self.problem.contact_zones]
+        in_zones, names = self.outline.in_zones, [*self.problem.zones]
         paired = {name: in_zones[names.index(name)].copy() for name in self.surfaces}
         for (zone, own), (name, held) in permutations(self.held.items(), 2):
             if tools.get(name) == tools.get(zone):
                 apart = np.hypot(*np.moveaxis(held.normals - own.normals, 2, 0)) > ALIKE
-                apart |= abs(held.gap - own.gap) > ALIKE * self.problem.boundary.size
+                apart |= abs(held.gap - own.gap) > ALIKE * self.problem.size
                 paired[zone] |= in_zones[names.index(name)] & ~apart.any(axis=1)
         return paired
 
@@ -186,7 +187,13 @@ class SurfaceGaps:
         return Closest(gap.reshape(points.shape[:-1]), normals.reshape(points.shape))
 
     def tool_motion(self, zone: str, points: Array) -> Array:
-        """Displacement (..., 2) [L] of a surface at points (..., 2): that of its tool."""
+        """Displacement (..., 2) [L] of a surface at points (..., 2): that of its tool, or of the other elastic body."""
+        surface = self.surfaces[zone]
+        if isinstance(surface, BodySurface) and surface.elastic:
+            feet = surface.feet(points.reshape(-1, 2))
+            element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)
+            values = np.einsum("ki,kix->kx", reference_element.values(xi), self.state.displacement[element])
+            return values.reshape(points.shape)
         for name, tool in self.problem.tools.items():
             if zone in tool.zones:
                 x, y, turn = self.tools[name]
@@ -210,7 +217,7 @@ class SurfaceGaps:
         that is behind the surface before anything moves does not count unless it fits it with interference, nor does
         one opposite to which the surface is taken to have ended.
         """
-        paired, near = self.paired[zone], self._near(zone)
+        paired, near = self.paired[zone], self._near(zone) & self._may_meet(zone)
         m, ends = len(paired), self._ends(zone, paired)
         depth, xi, behind, hidden = np.full(m, -np.inf), np.zeros(m), np.zeros(m, bool), [-np.inf] * len(ends)
         for elements, own in ((np.flatnonzero(paired), True), (np.flatnonzero(~paired & near), False)):
@@ -255,7 +262,7 @@ class SurfaceGaps:
         moved = np.hypot(*np.moveaxis(self._displacement[elements] - self.tool_motion(zone, places), 2, 0))
         for corner in surface.points:
             beside |= np.hypot(*np.moveaxis(places - corner, 2, 0)) <= moved
-        return beside & (moved <= LITTLE * self.problem.boundary.size)
+        return beside & (moved <= LITTLE * self.problem.size)
 
     def _same(self, zone: str, here: Faces) -> BoolArray:
         """Whether the face of each place (k, q, 3) is that of each node of its element; a smooth surface has one."""
@@ -270,7 +277,7 @@ class SurfaceGaps:
 
         Also whether each is behind, and the depth beyond each end; the local coordinates come last.
         """
-        flush, at = FLUSH * self.problem.boundary.size, self.outline.sampled(elements)
+        flush, at = FLUSH * self.problem.size, self.outline.sampled(elements)
         motion = self._displacement[elements]
         before, normals = self.undeformed(zone, at.points)
         after = self.exact(zone, at.points + motion).gap
@@ -325,7 +332,7 @@ class SurfaceGaps:
         the zone. `before` (k, q) is the distance [L] of places from the surface, and `turned` (k, q) says whether they
         face it.
         """
-        size, mesh, paired = self.problem.boundary.size, self.outline.mesh, self.paired[zone]
+        size, mesh, paired = self.problem.size, self.outline.mesh, self.paired[zone]
         inside = before < -FLUSH * size
         if not inside.any():
             return np.zeros(len(elements), bool)
@@ -373,7 +380,7 @@ class SurfaceGaps:
     def _zones_of(self, element: int) -> set[str]:
         """Names of the zones that the edge of an element is in."""
         edge = self.state.edge_names[self.state.edge[element]]
-        return {zone for zone in self.problem.contact_zones if edge in self.problem.edges_of(zone)}
+        return {zone for zone in self.problem.zones if edge in self.problem.edges_of(zone)}
 
     def in_a_zone(self, element: int) -> bool:
         """Whether the edge of an element is in any zone."""
@@ -384,7 +391,7 @@ class SurfaceGaps:
 
         The line is the straight face itself, or is drawn inside it: then they fit with interference.
         """
-        flush = FLUSH * self.problem.boundary.size
+        flush = FLUSH * self.problem.size
         if np.abs((self.state.points[elements] - at) @ normal).max() > 2 * flush:
             return False  # nodes are among the samples, up to round-off
         places = self.outline.sampled(elements).points
@@ -394,7 +401,7 @@ class SurfaceGaps:
 
     def _ahead(self, zone: str, paired: BoolArray, at: Array, along: Array, normal: Array) -> Iterator[float]:
         """Distances [L] from an end of the zone to its next edges on the same line, and to points of the surface."""
-        flush, surface = FLUSH * self.problem.boundary.size, self.surfaces[zone]
+        flush, surface = FLUSH * self.problem.size, self.surfaces[zone]
         of_zone = self.outline.sampled(np.flatnonzero(paired)).points.reshape(-1, 2)
         gap, normals = self.undeformed(zone, of_zone)
         points = (of_zone - gap[:, None] * normals)[gap <= flush]
@@ -420,11 +427,19 @@ class SurfaceGaps:
         It is a part of that difference, and no more than `LARGEST_PART`: what is deeper can be seen.
         """
         # only rotations and strains cause differences; translations are exact in linear theory
-        size = self.problem.boundary.size
+        size = self.problem.size
         turns = [abs(self.tools[name][2]) for name, tool in self.problem.tools.items() if zone in tool.zones]
         return float(
             sum(min(moved / size, LARGEST_PART) * moved for moved in (self._spread, *(turn * size for turn in turns)))
         )
+
+    def _may_meet(self, zone: str) -> BoolArray:
+        """Whether each element (m,) is compared with a surface: of a contact of two bodies those of the first alone."""
+        mesh, surface = self.outline.mesh, self.surfaces[zone]
+        if not isinstance(surface, BodySurface):
+            return np.ones(len(mesh.elements), bool)
+        first = self.problem.part_of(self.problem.edges_of(zone)[0])
+        return np.array([self.problem.part_of(name) == first for name in mesh.edge_names])[mesh.edge]
 
     def _near(self, zone: str) -> BoolArray:
         """Whether each element (m,) may touch a surface: no place of it is farther from its middle than its length."""

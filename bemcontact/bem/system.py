@@ -18,7 +18,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import kernels, reference_element
-from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.contact_points import UnitPressures
 from bemcontact.bem.flat import FlatColumns, FlatElements, FlatPoints, FlatRules, flat_rules
 from bemcontact.bem.influence import Collocation, Influence, InfluenceRows
 from bemcontact.bem.loading import Loading
@@ -187,14 +187,15 @@ class System:
 
     Parameters
     ----------
-    mesh, material, points, motions : of the body
+    mesh, material, motions : of the body
+    points : its unit pressures
     loadings : s loadings, each with a right side; they prescribe displacement and traction at the same places
     by_numba : whether machine code of numba, if installed, assembles the system; if None, it does if that is faster
     """
 
     mesh: Mesh
     material: Material
-    points: ContactPoints
+    points: UnitPressures
     motions: RigidMotions
     loadings: Sequence[Loading]
     by_numba: bool | None = None
@@ -276,30 +277,30 @@ class System:
         """Traction times Jacobian along each axis for unit unknown tractions."""
         first = int((self.unknowns.displacement >= 0).sum())
         columns = self.unknowns.traction[self.influence.traction_elements] - first
-        factors = np.ones(self.unknowns.size - first)
-        carried = []
+        carried, count = [], self.unknowns.size - first
         for axis in range(2):
             element, local = np.nonzero(columns[..., axis] >= 0)
-            carried.append(self._carried(element, local, columns[element, local, axis], factors))
+            factors = np.ones(len(element))
+            carried.append(self._carried(element, local, columns[element, local, axis], factors, count))
         return carried
 
     @cached_property
     def _unit_pressures(self) -> list[_Carried]:
-        """Traction times Jacobian along each axis for unit pressures: t = p n."""
+        """Traction times Jacobian along each axis for unit pressures."""
         points = self.points
         element = np.searchsorted(self.influence.traction_elements, points.element)
-        return [self._carried(element, points.local, points.point, n) for n in points.normals.T]
+        return [self._carried(element, points.local, points.pressure, t, len(points)) for t in points.traction.T]
 
-    def _carried(self, element: IntArray, local: IntArray, column: IntArray, factors: Array) -> _Carried:
-        """Jacobian times the factor of its column (q,), at (element, local node) pairs (q,); several may be at one."""
-        values = self._jacobians[element, local] * factors[column]
+    def _carried(self, element: IntArray, local: IntArray, column: IntArray, factors: Array, columns: int) -> _Carried:
+        """Jacobian times factors (q,) at (element, local node) pairs (q,) of columns (q,); several may be at one."""
+        values = self._jacobians[element, local] * factors
         order = np.argsort(column, kind="stable")
         begins = np.searchsorted(column[order], column[order])
         number = np.arange(len(order)) - begins  # of a place among those of the same column
         rows, parts = local * len(self._jacobians) + element, []
         for some in (order[number == i] for i in range(number.max(initial=-1) + 1)):
             parts.append((rows[some], column[some], values[some, None]))
-        return _Carried(len(factors), parts)
+        return _Carried(columns, parts)
 
     def rows(self, block: InfluenceRows) -> Iterator[SystemRows]:
         """Turn rows of F and G into rows of the system: the x equations of the block, then its y equations."""
@@ -349,7 +350,7 @@ class System:
         jacobians = (self.mesh.jacobians / self.length)[..., None]
         sought, axis = np.nonzero((self.unknowns.traction >= 0).reshape(-1, 2))
         points = self.points
-        pressed = points.normals[points.point] * jacobians[points.element, points.local]
+        pressed = points.traction * jacobians[points.element, points.local]
         return FlatColumns.of(
             displacement=self.unknowns.displacement,
             known=-self._known_displacement,
@@ -357,7 +358,7 @@ class System:
             first_known=self.size,
             slot=np.append(sought, 3 * points.element + points.local),
             column=np.append(
-                self.unknowns.traction.reshape(-1, 2)[sought, axis], self.size + len(self.loadings) + points.point
+                self.unknowns.traction.reshape(-1, 2)[sought, axis], self.size + len(self.loadings) + points.pressure
             ),
             traction=np.append(-np.eye(2)[axis] * jacobians.reshape(-1, 1)[sought], pressed, axis=0),
         )

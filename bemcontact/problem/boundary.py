@@ -129,8 +129,13 @@ class Boundary(SpecModel):
     @cached_property
     def size(self) -> float:
         """Diameter of the bounding box [L]."""
-        points = np.vstack([edge.polyline() for edge in self.edges])
-        return float(np.hypot(*np.ptp(points, axis=0)))
+        return size_of(self.edges)
+
+
+def size_of(edges: Iterable[Edge]) -> float:
+    """Diameter of the bounding box of edges [L]."""
+    points = np.vstack([edge.polyline() for edge in edges])
+    return float(np.hypot(*np.ptp(points, axis=0)))
 
 
 def _with_ends(edge: AnyEdge, ends: Sequence[float] | None) -> AnyEdge:

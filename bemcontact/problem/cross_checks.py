@@ -8,7 +8,7 @@ from math import degrees, radians
 import numpy as np
 
 from bemcontact.errors import Issue, KeyPath
-from bemcontact.problem.boundary import Boundary, far_issue
+from bemcontact.problem.boundary import Boundary, far_issue, size_of
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.contact_zone import ALL, TOOL_COMPONENTS, ContactZone, RigidTool, ToolAction
 from bemcontact.problem.curves import Edge
@@ -223,17 +223,17 @@ def _too_few_elements(edge: Edge, refine: int) -> str:
     return f"{start}; give it more elements, and grade them towards the bend"
 
 
-def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone], prescribed: Collection[str]) -> list[Issue]:
+def facing_issues(boundary: Sequence[Edge], zones: Mapping[KeyPath, ContactZone], prescribed: Collection[str]) -> list[Issue]:
     """Issues of rigid surfaces that are too far away or too wide, or whose normal points out of the body there.
 
     The direction of a deflected contour must not point out of the body at any point of the zone. `prescribed` names
     the edges with conditions.
     """
-    edges = {edge.name: edge for edge in boundary.edges}
+    edges, size = {edge.name: edge for edge in boundary}, size_of(boundary)
     issues = []
     for path, zone in zones.items():
         members = [edges[name] for name in zone_edges(boundary, zone, prescribed)]
-        if far := far_issue((*path, "surface"), [*_lengths(zone.surface)], boundary.size):
+        if far := far_issue((*path, "surface"), [*_lengths(zone.surface)], size):
             issues.append(far)
             continue
         if not members:
@@ -252,11 +252,11 @@ def facing_issues(boundary: Boundary, zones: Mapping[KeyPath, ContactZone], pres
     return issues or [*_unseen(boundary, zones, prescribed)]
 
 
-def _unseen(boundary: Boundary, zones: Mapping[KeyPath, ContactZone], prescribed: Collection[str]) -> Iterator[Issue]:
+def _unseen(boundary: Sequence[Edge], zones: Mapping[KeyPath, ContactZone], prescribed: Collection[str]) -> Iterator[Issue]:
     """Issues of surfaces that no edge can touch, and of edges of several zones that turn their backs to one of them."""
     touching = {path: zone_edges(boundary, zone, prescribed) for path, zone in zones.items()}
     count = Counter(name for names in touching.values() for name in names)
-    edges = {edge.name: edge for edge in boundary.edges}
+    edges = {edge.name: edge for edge in boundary}
     for number, (path, zone) in enumerate(zones.items()):
         for other, its in list(zones.items())[:number]:
             both = {*touching[path]} & {*touching[other]}
@@ -275,7 +275,7 @@ def _unseen(boundary: Boundary, zones: Mapping[KeyPath, ContactZone], prescribed
                 yield Issue(path=(*path, "edges", i), message=message)
 
 
-def _nothing_sees(boundary: Boundary, zone: ContactZone) -> str:
+def _nothing_sees(boundary: Sequence[Edge], zone: ContactZone) -> str:
     """Say why no edge can touch a surface."""
     seeing = zone_edges(boundary, zone, ())
     if not seeing:

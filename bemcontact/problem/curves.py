@@ -39,6 +39,10 @@ class Curve(Protocol):
         """Fraction in [0, 1] of the arc length at a point on the curve or near it."""
         ...
 
+    def nearest(self, points: Array) -> Array:
+        """Fractions (k,) in [0, 1] of the arc length where the curve is nearest to points (k, 2)."""
+        ...
+
 
 @dataclass(frozen=True, kw_only=True)
 class Segment:
@@ -71,6 +75,11 @@ class Segment:
             return 0.0
         along, off = np.subtract(self.end, self.start) / self.length, np.subtract(point, self.start)
         return min(max(float(along @ off) / self.length, 0.0), 1.0)
+
+    def nearest(self, points: Array) -> Array:
+        """Fractions (k,) in [0, 1] of the arc length where the line is nearest to points (k, 2)."""
+        along = np.subtract(self.end, self.start) / self.length
+        return np.clip((points - np.array(self.start)) @ along / self.length, 0.0, 1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,6 +117,14 @@ class CircularArc:
         """Fraction in [0, 1] of the arc length at the point in the same direction from the center."""
         x, y = np.subtract(point, self.center)
         return _part_of_sweep(atan2(y, x), self.start_angle, self.sweep)
+
+    def nearest(self, points: Array) -> Array:
+        """Fractions (k,) in [0, 1] of the arc length where the arc is nearest to points (k, 2)."""
+        x, y = (points - np.array(self.center)).T
+        angle, sweep = np.arctan2(y, x), abs(self.sweep)
+        turned = np.mod(angle - self.start_angle if self.sweep > 0 else self.start_angle - angle, 2 * pi)
+        turned[turned > (sweep + 2 * pi) / 2] = 0.0
+        return np.minimum(turned / sweep, 1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,6 +171,28 @@ class EllipticArc:
         part = _part_of_sweep(atan2((c * y - s * x) / b, (c * x + s * y) / a), self.start_angle, self.sweep)
         first, here, last = self._arc_length(self.start_angle + np.array([0.0, part, 1.0]) * self.sweep)
         return float(here - first) / float(last - first) if last != first else 0.0
+
+    def nearest(self, points: Array) -> Array:
+        """Fractions (k,) in [0, 1] of the arc length where the arc is nearest to points (k, 2)."""
+        (a, b), c, s = self.semi_axes, cos(self.rotation), sin(self.rotation)
+        x, y = np.array([[c, s], [-s, c]]) @ (points - np.array(self.center)).T
+        angles = self.start_angle + np.linspace(0, 1, _chords(self.sweep) + 1) * self.sweep
+        away = np.hypot(x[:, None] - a * np.cos(angles), y[:, None] - b * np.sin(angles))
+        step, ends = abs(self.sweep) / (len(angles) - 1), np.sort(self.start_angle + np.array([0.0, self.sweep]))
+        t = angles[away.argmin(axis=1)]
+        low, high = np.maximum(t - step, ends[0]), np.minimum(t + step, ends[1])
+        for _ in range(60):
+            slope = (a * np.cos(t) - x) * -a * np.sin(t) + (b * np.sin(t) - y) * b * np.cos(t)
+            low, high = np.where(slope <= 0, t, low), np.where(slope >= 0, t, high)
+            bend = a * a * np.sin(t) ** 2 + b * b * np.cos(t) ** 2
+            bend -= (a * np.cos(t) - x) * a * np.cos(t) + (b * np.sin(t) - y) * b * np.sin(t)
+            moved = t - slope / np.where(bend > 0, bend, np.inf)
+            moved = np.where((moved >= low) & (moved <= high) & (bend > 0), moved, (low + high) / 2)
+            done, t = np.all(np.abs(moved - t) <= 1e-15 * max(abs(ends[0]), abs(ends[1]), 1.0)), moved
+            if done:
+                break
+        first, last = self._arc_length(self.start_angle + np.array([0.0, self.sweep]))
+        return np.clip((self._arc_length(t) - first) / (last - first), 0.0, 1.0)
 
     def _at_eccentric_angle(self, t: Array) -> Array:
         """Points (k, 2) at eccentric angles t (k,)."""

@@ -24,13 +24,15 @@ class LoadCase(SpecModel):
     """The conditions on edges that are added, by edge name."""
     loads: Loads = Loads()
     """The loads on the volume of the body that are added."""
+    bodies: dict[Name, Loads] = Field(default_factory=dict)
+    """The loads on the volume of each of several bodies that are added, by the name of the body."""
     tools: dict[Name, ToolAction] = Field(default_factory=dict)
     """The displacements of tools and forces on them that are added, by the name of the tool."""
 
     @model_validator(mode="after")
     def _not_empty(self) -> Self:
         """Refuse a load case without loads."""
-        if not self.conditions and self.loads == Loads() and not self.tools:
+        if not self.conditions and self.loads == Loads() and not self.bodies and not self.tools:
             raise invalid("the load case is empty; give conditions, loads or tools")
         return self
 

@@ -1,11 +1,10 @@
-"""A problem: a body, its conditions and loads, and the rigid surfaces that it may touch; checked when it is made."""
+"""A problem: elastic bodies, their conditions and loads, and what they may touch; checked when it is made."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import (
-    AfterValidator,
     Field,
     ModelWrapValidatorHandler,
     PrivateAttr,
@@ -18,9 +17,21 @@ from pydantic import (
 
 from bemcontact.arrays import real_array
 from bemcontact.checks.arguments import load_factors, shown, text_of_argument, whole_number
-from bemcontact.errors import Issue, ProblemError
+from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.options import EXPECTED_ACCURACY
-from bemcontact.problem.boundary import Boundary
+from bemcontact.problem.body_checks import body_issues, contact_issues, opposite_issues
+from bemcontact.problem.bodies import (
+    SEPARATOR,
+    BodyContact,
+    BodyName,
+    BodySpec,
+    Part,
+    named_loops,
+    placed,
+    with_boundary,
+)
+from bemcontact.problem.body_surface import BodySurface, BodyZone
+from bemcontact.problem.boundary import Boundary, size_of
 from bemcontact.problem.conditions import Condition, Loads
 from bemcontact.problem.contact_zone import ContactZone, RigidTool, ToolAction
 from bemcontact.problem.cross_checks import (
@@ -37,6 +48,7 @@ from bemcontact.problem.joints import without_joints
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path, with_entry
 from bemcontact.problem.load_case import Combination, LoadCase
 from bemcontact.problem.material import Material
+from bemcontact.problem.pairing import OppositePart, opposite_parts
 from bemcontact.problem.reference import ReferenceSpec
 from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.units import Units
@@ -49,9 +61,10 @@ from bemcontact.problem.validation import (
     Title,
     invalid,
     issues_of,
+    missing_keys,
 )
 from bemcontact.problem.variant import Variant, issues_of_values
-from bemcontact.problem.visibility import zone_edges
+from bemcontact.problem.visibility import edges_that_see, zone_edges
 from bemcontact.problem.wording import unknown_word
 
 ACCURACY = 0.01
@@ -71,11 +84,9 @@ class MeshDensity(SpecModel):
     stated or an edge has no elements."""
 
 
-def _has_contact(value: dict[str, Any]) -> dict[str, Any]:
-    """Refuse a problem without a contact zone."""
-    if not value:
-        raise invalid("there is no contact zone; give at least one, with its edges and its surface")
-    return value
+NO_CONTACT = "there is no contact zone; give at least one, with its edges and its surface"
+OF_ONE_BODY = ("material", "boundary", "contact_zones")
+"""Keys that a problem of one body needs."""
 
 
 def _accuracy(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
@@ -87,9 +98,10 @@ def _accuracy(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
 
 
 class Problem(SpecModel):
-    """A body in plane strain or plane stress, its conditions and loads, and the rigid surfaces that it may touch.
+    """Bodies in plane strain or plane stress, their conditions and loads, and what they may touch.
 
-    Parameters are the keys of a spec, see the attributes.
+    Parameters are the keys of a spec, see the attributes. A problem of one body has material and boundary, a problem of
+    several bodies has bodies and contacts instead.
 
     Raises
     ------
@@ -105,17 +117,23 @@ class Problem(SpecModel):
     """A description of the problem: its source, and what is known about its solution."""
     units: Units = Units()
     """The labels of the units."""
-    material: Material
+    material: Material | None = None
     """The material of the body: young_modulus and poisson_ratio."""
-    boundary: Boundary
+    boundary: Boundary | None = None
     """The boundary of the body: the edges of its outer loop, and of its holes."""
+    materials: dict[Name, Material] = Field(default_factory=dict)
+    """The materials of several bodies, by name."""
+    bodies: dict[BodyName, BodySpec] = Field(default_factory=dict)
+    """The bodies by name, if there are several. Their edges are called BODY/EDGE in contacts, zones and load cases."""
+    contacts: dict[Name, BodyContact] = Field(default_factory=dict)
+    """The contacts by name, each between two of the bodies."""
     conditions: dict[Name, Condition] = Field(default_factory=dict)
     """The conditions on edges, by edge name. An edge that is left out is free of traction."""
     loads: Loads = Loads()
     """The loads on the volume of the body."""
-    contact_zones: Annotated[
-        dict[Name, ContactZone], AfterValidator(_has_contact), Field(json_schema_extra={"minProperties": 1})
-    ]
+    contact_zones: Annotated[dict[Name, ContactZone], Field(json_schema_extra={"minProperties": 1})] = Field(
+        default_factory=dict
+    )
     """The contact zones by name, each with edges and the rigid surface that they may touch."""
     tools: dict[Name, RigidTool] = Field(default_factory=dict)
     """The tools by name: rigid surfaces that are displaced, or loaded and free to move; others are fixed."""
@@ -140,6 +158,12 @@ class Problem(SpecModel):
 
     _edges: dict[str, tuple[str, ...]] = PrivateAttr(default_factory=dict)
     """The edges of each zone; copies with other elements or loads share them."""
+    _opposite: dict[str, tuple[OppositePart, ...]] = PrivateAttr(default_factory=dict)
+    """The parts of edges that are opposite to another elastic body, of each contact; likewise."""
+    _placed: dict[str, Boundary] = PrivateAttr(default_factory=dict)
+    """The boundaries of copies; a copy with other elements has a boundary of its own."""
+    _zones: dict[str, ContactZone | BodyZone] = PrivateAttr(default_factory=dict)
+    """Contact zones and contacts by name; likewise."""
 
     @model_validator(mode="wrap")
     @classmethod
@@ -150,14 +174,29 @@ class Problem(SpecModel):
             raw, issues = RawValue((), problem), []
         except ValidationError as error:
             problem, raw, issues = None, RawValue((), data), issues_of(error)
-        issues += cls._mismatches(raw)
+        issues += cls._missing_parts(raw)
+        several = bool(raw.below(cls, "bodies").value)
+        if not several:
+            issues += cls._mismatches(raw)
+        elif problem is not None:
+            issues += problem._mismatches_of_bodies()
         if problem is not None and not issues:
             issues += problem._variant_issues()
         if problem is None or issues:
             raise ProblemError(issues)
-        for zone in problem.contact_zones:
+        for zone in problem.zones:
             problem.edges_of(zone)
         return problem
+
+    @classmethod
+    def _missing_parts(cls, raw: RawValue) -> Iterator[Issue]:
+        """Issues of a problem of one body without one of its parts."""
+        if raw.below(cls, "bodies").value:
+            return
+        yield from missing_keys(cls, raw.value, OF_ONE_BODY)
+        zones = raw.below(cls, "contact_zones")
+        if zones.value == {} and isinstance(raw.value, Mapping | Problem) and not _left_out(raw.value, "contact_zones"):
+            yield Issue(path=zones.path, message=NO_CONTACT)
 
     @classmethod
     def _mismatches(cls, raw: RawValue) -> list[Issue]:
@@ -166,24 +205,24 @@ class Problem(SpecModel):
         cases = [case.below(LoadCase, "conditions") for case in raw.below(cls, "load_cases").named()]
         issues = edge_name_issues(boundary, [conditions, *cases], zones)
         references = reference_issues(raw.below(cls, "reference"), zones, cls._raw_case_names(raw))
-        references += cls._action_issues(raw, zones)
+        references += cls._action_issues(raw, zones, conditions)
         body = boundary.read(Boundary)
         if body is None:
             return [*issues, *references]
         if not issues:  # else an edge may be in the zone by mistake
             valid = {item.path: zone for item in zones.named() if (zone := item.read(ContactZone))}
             prescribed = {item.name for group in (conditions, *cases) for item in group.named()}
-            issues += facing_issues(body, valid, prescribed)
+            issues += facing_issues(body.edges, valid, prescribed)
         density = raw.below(cls, "mesh").read(MeshDensity) or MeshDensity()
-        issues += cls._mesh_choice_issues(raw, body, density)
+        issues += cls._mesh_choice_issues(raw, body.edges, density)
         return [*issues, *references, *mesh_issues(body, boundary.path, density.refine)]
 
     @classmethod
-    def _mesh_choice_issues(cls, raw: RawValue, body: Boundary, density: MeshDensity) -> Iterator[Issue]:
+    def _mesh_choice_issues(cls, raw: RawValue, edges: Sequence[Edge], density: MeshDensity) -> Iterator[Issue]:
         """Issues of a mesh that is neither stated nor to be found."""
         accuracy = raw.below(cls, "accuracy")
         none_asked = accuracy.value is None and (isinstance(raw.value, Problem) or accuracy.name in raw.value)
-        unmeshed = next((edge.name for edge in body.edges if edge.elements is None), None)
+        unmeshed = next((edge.name for edge in edges if edge.elements is None), None)
         if unmeshed is not None and density.adapt is False:
             message = f"edge '{unmeshed}' states no elements; give their number, or leave adapt out: the mesh is found"
             yield Issue(path=("mesh", "adapt"), message=message)
@@ -192,10 +231,29 @@ class Problem(SpecModel):
             message = f"{what}, and a mesh is found for an accuracy; give one such as 0.01, or state all elements"
             yield Issue(path=accuracy.path, message=message)
 
+    def _mismatches_of_bodies(self) -> list[Issue]:
+        """Issues of parts of several bodies that do not fit each other."""
+        if issues := [*body_issues(self)]:
+            return issues
+        raw, conditions = RawValue((), self), RawValue(("conditions",), self.edge_conditions)
+        zones = RawValue(("contact_zones",), {**self.contact_zones, **self.contacts})
+        issues += [*contact_issues(self), *self._action_issues(raw, zones, conditions)]
+        issues += reference_issues(raw.below(type(self), "reference"), zones, self._raw_case_names(raw))
+        stated = {("contact_zones", name): zone for name, zone in self.contact_zones.items()}
+        if not issues:
+            issues += facing_issues(self.edges, stated, self._held_edges())
+        if not issues:
+            issues += opposite_issues(self)
+        issues += self._mesh_choice_issues(raw, self.edges, self.mesh)
+        for part in self.parts:
+            issues += mesh_issues(part.boundary, self._boundary_path(part.name), self.mesh.refine)
+        return issues
+
     @classmethod
-    def _action_issues(cls, raw: RawValue, zones: RawValue) -> list[Issue]:
+    def _action_issues(cls, raw: RawValue, zones: RawValue, conditions: RawValue) -> list[Issue]:
         """Issues of tools and load cases that do not fit the other parts."""
-        parts = {key: raw.below(cls, key) for key in ("conditions", "tools", "load_cases", "combinations", "case")}
+        parts = {key: raw.below(cls, key) for key in ("tools", "load_cases", "combinations", "case")}
+        parts["conditions"] = conditions
         cases, combinations, case = parts["load_cases"], parts["combinations"], parts["case"]
         issues = [*tool_issues(parts["tools"], zones), *load_case_issues(cases, combinations, parts)]
         names = cls._raw_case_names(raw)
@@ -224,7 +282,136 @@ class Problem(SpecModel):
         """Whether a mesh is to be found for the accuracy."""
         if self.mesh.adapt is not None:
             return self.mesh.adapt
-        return not self.boundary.meshed or isinstance(self.accuracy, float)
+        return any(edge.elements is None for edge in self.edges) or isinstance(self.accuracy, float)
+
+    @property
+    def several(self) -> bool:
+        """Whether the problem has several bodies."""
+        return bool(self.bodies)
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """The elastic bodies."""
+        if not self.bodies:
+            assert self.material is not None and self.boundary is not None, "a problem of one body has both"
+            one = Part(
+                name="", material=self.material, boundary=self.boundary, conditions=self.conditions, loads=self.loads
+            )
+            return (one,)
+        return tuple(self._part(name, body) for name, body in self.bodies.items() if self._is_elastic(body))
+
+    def _is_elastic(self, body: BodySpec) -> bool:
+        return not (self.bodies[body.copy_of] if body.copy_of is not None else body).rigid
+
+    def _part(self, name: str, body: BodySpec) -> Part:
+        """An elastic body."""
+        material = self._material(name)
+        return Part(
+            name=name, material=material, boundary=self.boundary_of(name), conditions=body.conditions, loads=body.loads
+        )
+
+    def _material(self, body: str) -> Material:
+        """Material of one of several elastic bodies."""
+        stated = self.bodies[self.bodies[body].copy_of or body].material
+        assert stated is not None, "an elastic body has one"
+        return self.materials[stated] if isinstance(stated, str) else stated
+
+    def boundary_of(self, body: str) -> Boundary:
+        """Boundary of one of several bodies."""
+        stated = self.bodies[body]
+        if stated.copy_of is None:
+            assert stated.boundary is not None, "an original has one"
+            return stated.boundary
+        if body not in self._placed:
+            self._placed[body] = placed(self.boundary_of(stated.copy_of), stated)
+        return self._placed[body]
+
+    def part_of(self, edge: str) -> str:
+        """Name of the body that has an edge; empty for the only body."""
+        return edge.partition(SEPARATOR)[0] if self.bodies else ""
+
+    @property
+    def loops(self) -> tuple[tuple[Edge, ...], ...]:
+        """All loops of the elastic bodies, with the names that edges have in the problem."""
+        return tuple(loop for part in self.parts for loop in part.loops)
+
+    @property
+    def edges(self) -> tuple[Edge, ...]:
+        """All edges of the elastic bodies in order of the loops, with the names that they have in the problem."""
+        return tuple(edge for loop in self.loops for edge in loop)
+
+    @property
+    def size(self) -> float:
+        """Diameter of the bounding box of the elastic bodies [L]."""
+        return size_of(self.edges) if self.boundary is None else self.boundary.size
+
+    @property
+    def volume_loads(self) -> list[tuple[Loads, ...]]:
+        """The loads on the volume of each elastic body: the permanent ones, then those of each load case."""
+        parts = self.parts
+        cases = [
+            tuple(case.bodies.get(part.name, Loads()) if part.name else case.loads for part in parts)
+            for case in self.load_cases.values()
+        ]
+        return [tuple(part.loads for part in parts), *cases]
+
+    @property
+    def edge_conditions(self) -> dict[str, Condition]:
+        """The conditions on edges of all bodies, by the names that edges have in the problem."""
+        if not self.bodies:
+            return self.conditions
+        return {part.edge_name(own): it for part in self.parts for own, it in part.conditions.items()}
+
+    def condition_path(self, path: KeyPath) -> KeyPath:
+        """Key path of a condition from ("conditions", name of the edge in the problem, …)."""
+        if not self.bodies or path[:1] != ("conditions",):
+            return path
+        body, _, edge = str(path[1]).partition(SEPARATOR)
+        return ("bodies", body, "conditions", edge, *path[2:])
+
+    @property
+    def zones(self) -> Mapping[str, ContactZone | BodyZone]:
+        """The contact zones, then the contacts between bodies as zones on the surface of the second body."""
+        if not self.contacts:
+            return self.contact_zones
+        if not self._zones:
+            self._zones.update(self.contact_zones)
+            self._zones.update((name, self._zone_of(contact)) for name, contact in self.contacts.items())
+        return self._zones
+
+    def _zone_of(self, contact: BodyContact) -> BodyZone:
+        """A contact between two bodies as a zone on the surface of the second one."""
+        first, second = contact.between
+        if not self._is_elastic(self.bodies[_body_in(first)]):
+            first, second = second, first
+        body = _body_in(second)
+        elastic, loops = self._is_elastic(self.bodies[body]), named_loops(self.boundary_of(body), body)
+        held = {name for name in self._held_edges() if elastic} if second == (body,) else set[str]()
+        touched = tuple(
+            edge
+            for loop in loops
+            for edge in loop
+            if (edge.name in second or second == (body,)) and edge.name not in held
+        )
+        surface = BodySurface(body=body, elastic=elastic, edges=touched, loops=loops, offset=contact.gap)
+        edges = first
+        if first == (own := _body_in(first),):
+            lines = [edge for loop in named_loops(self.boundary_of(own), own) for edge in loop]
+            edges = tuple(name for name in edges_that_see(lines, surface) if name not in self._held_edges())
+        return BodyZone(edges=edges, surface=surface)
+
+    def _held_edges(self) -> set[str]:
+        """Names of the edges with a condition, in the problem or in a load case."""
+        return {*self.edge_conditions}.union(*(case.conditions for case in self.load_cases.values()))
+
+    def opposite(self, contact: str) -> tuple[OppositePart, ...]:
+        """Parts of the edges of the first body that are opposite to the second elastic body of a contact."""
+        if contact not in self._opposite:
+            zone, edges = self.zones[contact], {edge.name: edge for edge in self.edges}
+            assert isinstance(zone.surface, BodySurface)
+            parts = opposite_parts([edges[name] for name in self.edges_of(contact)], zone.surface)
+            self._opposite[contact] = tuple(parts)
+        return self._opposite[contact]
 
     @property
     def title(self) -> str:
@@ -288,15 +475,18 @@ class Problem(SpecModel):
         zone : name of the zone
         """
         if zone not in self._edges:
-            prescribed = {*self.conditions}.union(*(case.conditions for case in self.load_cases.values()))
-            self._edges[zone] = zone_edges(self.boundary, self.contact_zones[zone], prescribed)
+            prescribed = self._held_edges()
+            self._edges[zone] = zone_edges(self.edges, self.zones[zone], prescribed)
         return self._edges[zone]
 
     def without_joints(self) -> Self:
         """Copy in which edges that go on in the next one without any change are one edge, without variants.
 
+        Those of several bodies stay as they are stated.
         They have the same curve, conditions and zones, and state no elements. The name of the one edge has all theirs.
         """
+        if self.boundary is None:
+            return self
         loops = [*zip(self.boundary.loop_specs, self.boundary.loops, strict=True)]
         surfaces = [zone.surface for zone in self.contact_zones.values()]
         known = [surface for surface in surfaces if not isinstance(surface, DeflectedContour)]
@@ -332,11 +522,12 @@ class Problem(SpecModel):
     def edge(self, name: str) -> Edge:
         """Edge with a name; `ProblemError` if there is none."""
         text_of_argument(name, "the name of an edge")
-        for edge in self.boundary.edges:
+        for edge in self.edges:
             if edge.name == name:
                 return edge
-        known = [edge.name for edge in self.boundary.edges]
-        raise ProblemError(Issue(path=("boundary",), message=unknown_word("edge", name, known)))
+        known = [edge.name for edge in self.edges]
+        path = ("bodies",) if self.several else ("boundary",)
+        raise ProblemError(Issue(path=path, message=unknown_word("edge", name, known)))
 
     def refined(self, parts: int) -> Self:
         """Copy with a finer mesh.
@@ -397,16 +588,39 @@ class Problem(SpecModel):
             text_of_argument(name, "the name of an edge"): real_array(given, f"the ends on '{name}'", (None,)).tolist()
             for name, given in ends.items()
         }
-        boundary = self.boundary.with_element_ends(numbers)
-        if issues := mesh_issues(boundary, ("boundary",), self.mesh.refine):
+        issues, changed = list[Issue](), dict[str, Boundary]()
+        known = [edge.name for edge in self.edges]
+        if unknown := [name for name in numbers if name not in known]:
+            raise ProblemError(Issue(path=("boundary",), message=unknown_word("edge", unknown[0], known)))
+        for part in self.parts:
+            own = {edge.name: numbers[full] for edge in part.boundary.edges if (full := part.edge_name(edge.name)) in numbers}
+            changed[part.name] = part.boundary.with_element_ends(own)
+            issues += mesh_issues(changed[part.name], self._boundary_path(part.name), self.mesh.refine)
+        if issues:
             raise ProblemError(issues)
         mesh = self.mesh.model_copy(update={"adapt": False})
-        return self.model_copy(update={"boundary": boundary, "mesh": mesh, "variants": {}})
+        return self._with_boundaries(changed, mesh=mesh, variants={})
 
     def to_be_meshed(self, accuracy: float) -> Self:
         """Copy whose mesh is to be found for an accuracy: no edge states elements, and there are no variants."""
-        mesh, boundary = MeshDensity(), self.boundary.without_elements()
-        return self.model_copy(update={"boundary": boundary, "mesh": mesh, "accuracy": accuracy, "variants": {}})
+        boundaries = {part.name: part.boundary.without_elements() for part in self.parts}
+        return self._with_boundaries(boundaries, mesh=MeshDensity(), accuracy=accuracy, variants={})
+
+    def _boundary_path(self, body: str) -> KeyPath:
+        """Key path of the boundary of a body."""
+        return ("bodies", body, "boundary") if body else ("boundary",)
+
+    def _with_boundaries(self, boundaries: Mapping[str, Boundary], **others: Any) -> Self:
+        """Copy with other elements on the boundaries of the elastic bodies, and other values."""
+        if not self.bodies:
+            return self.model_copy(update={"boundary": boundaries[""], **others})
+        bodies = {
+            name: with_boundary(body, boundaries[name], self.bodies[body.copy_of or name].material)
+            if name in boundaries
+            else body
+            for name, body in self.bodies.items()
+        }
+        return self.model_copy(update={"bodies": bodies, **others})
 
     def with_value(self, path: str, value: Any) -> Self:
         """Copy with one value changed.
@@ -443,3 +657,13 @@ class Problem(SpecModel):
         for path, value in changes.items():
             data = with_entry(data, existing_path(data, parsed_path(path)), value)
         return type(self)(**data)
+
+
+def _body_in(side: Sequence[str]) -> str:
+    """Name of the body of one side of a contact."""
+    return side[0].partition(SEPARATOR)[0]
+
+
+def _left_out(data: Any, key: str) -> bool:
+    """Whether a key is not stated."""
+    return isinstance(data, Mapping) and key not in data

@@ -1,6 +1,6 @@
 """The base class of all parts of a problem, the types of their values, and the translation of their errors."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Self
 
@@ -280,6 +280,15 @@ def _unknown_key(cls: type[BaseModel], key: str) -> str:
         here = f"did you mean '{meant}'? " if meant else ""
         return f"unknown key '{key}'; {here}'{key}' belongs {' or '.join(places)}"
     return unknown_word("key", key, cls.model_fields)
+
+
+def missing_keys(cls: type[BaseModel], data: Any, keys: Sequence[str]) -> Iterator[Issue]:
+    """Issues of keys without which a mapping means nothing, though others may stand in for them."""
+    if isinstance(data, Mapping):
+        meant = misspelled(cls, data).values()
+        yield from (
+            Issue(path=(key,), message=_missing(cls, key)) for key in keys if key not in data and key not in meant
+        )
 
 
 def _missing(cls: type[BaseModel], key: str) -> str:

@@ -1,14 +1,14 @@
 """Which edges of a body can see a rigid surface: contact with no edges named."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.problem.boundary import Boundary
+from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.contact_zone import ContactZone
-from bemcontact.problem.curves import cross
+from bemcontact.problem.curves import Edge, cross
 from bemcontact.problem.rigid_surface import DeflectedContour, Shape
 
 TURNED = 0.05
@@ -25,30 +25,31 @@ def turned_to(inward: Array, normals: Array) -> BoolArray:
     return np.sum(inward * normals, axis=-1) > TURNED
 
 
-def zone_edges(boundary: Boundary, zone: ContactZone, prescribed: Collection[str]) -> tuple[str, ...]:
+def zone_edges(boundary: Sequence[Edge], zone: ContactZone, prescribed: Collection[str]) -> tuple[str, ...]:
     """Names of the edges of a zone; if it names none, those that can see its surface and have no condition."""
     if zone.edges is not None or isinstance(zone.surface, DeflectedContour):
         return zone.edges or ()
     return tuple(name for name in edges_that_see(boundary, zone.surface) if name not in prescribed)
 
 
-def edges_that_see(boundary: Boundary, surface: Shape) -> tuple[str, ...]:
+def edges_that_see(boundary: Sequence[Edge], surface: Shape | BodySurface) -> tuple[str, ...]:
     """Names of the edges that can touch a surface: from one of their places it is seen past the rest of the body.
 
     A place sees the surface if it is turned to it and the boundary does not cross the line to the nearest point of the
     surface. So a place behind the surface sees it unless the body is behind it in all its thickness there.
     """
     fractions = np.linspace(0, 1, SAMPLES)
-    outline = [edge.points(fractions) for edge in boundary.edges]
+    outline = [edge.points(fractions) for edge in boundary]
     starts, ends = [line[:-1] for line in outline], [line[1:] for line in outline]
     sides = _OutlineSides(np.concatenate(starts), np.concatenate(ends))
+    size = float(np.hypot(*np.ptp(np.concatenate(outline), axis=0)))
     seeing = []
-    for edge, line in zip(boundary.edges, outline, strict=True):
+    for edge, line in zip(boundary, outline, strict=True):
         places = line[1:-1]
         gap, normals = surface.closest(places)
         turned = turned_to(-edge.normals(fractions[1:-1]), normals)
         feet = places - gap[:, None] * normals
-        if not _blocked(places[turned], feet[turned], sides, ON_THE_WAY * boundary.size).all():
+        if not _blocked(places[turned], feet[turned], sides, ON_THE_WAY * size).all():
             seeing.append(edge.name)
     return tuple(seeing)
 

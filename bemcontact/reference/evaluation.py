@@ -143,10 +143,10 @@ def expected(problem: Problem, contact: CondensedContact) -> tuple[Expected, ...
     References of load cases that do not act are left out. `ProblemError` if the contact points are those of another
     problem.
     """
-    if contact.zone_names != tuple(problem.contact_zones):
+    if contact.zone_names != tuple(problem.zones):
         raise ProblemError(
             f"the contact points are in the zones {', '.join(contact.zone_names)}, those of the problem are "
-            f"{', '.join(problem.contact_zones)}; condense this problem"
+            f"{', '.join(problem.zones)}; condense this problem"
         )
     acting = {name: stated for name, stated in problem.reference.items() if stated.case in (None, problem.case)}
     return tuple(_expected(name, stated, problem, contact) for name, stated in acting.items())

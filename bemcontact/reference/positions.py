@@ -100,7 +100,7 @@ def reach(problem: Problem, frame: Frame) -> float:
 
     A side without material is beyond a line of symmetry and does not count. Holes are ignored.
     """
-    outline = np.concatenate([edge.polyline() for edge in problem.boundary.loops[0]])
+    outline = np.concatenate([edge.polyline() for edge in problem.loops[0]])
     along, inward = frame.distances(outline), frame.heights(outline)
-    sides = [float(side) for side in (along.max(), -along.min()) if side > LEVEL * problem.boundary.size]
+    sides = [float(side) for side in (along.max(), -along.min()) if side > LEVEL * problem.size]
     return min([*sides, float(inward.max())])

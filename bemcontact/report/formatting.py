@@ -67,9 +67,9 @@ def _range(values: Array) -> str:
 
 def prescribed(problem: Problem, edge: Edge) -> Iterator[str]:
     """Conditions of an edge: ``u_x = 0``, ``t_y = -3.6 kN/cm²``, ``pressure 3 N/mm²``, ``may touch in foot``."""
-    yield from (f"may touch in {name}" for name in problem.contact_zones if edge.name in problem.edges_of(name))
-    if edge.name in problem.conditions:
-        yield from _conditions(problem.conditions[edge.name], edge, problem.units)
+    yield from (f"may touch in {name}" for name in problem.zones if edge.name in problem.edges_of(name))
+    if edge.name in problem.edge_conditions:
+        yield from _conditions(problem.edge_conditions[edge.name], edge, problem.units)
     for case, factor in problem.factors().items():
         if (condition := problem.load_cases[case].conditions.get(edge.name)) is not None:
             yield from (f"{text} ({_acting(case, factor)})" for text in _conditions(condition, edge, problem.units))
@@ -108,7 +108,7 @@ def _volume_loads(loads: Loads, problem: Problem) -> Iterator[str]:
     if loads.centrifugal:
         yield f"rotation {number(loads.centrifugal.angular_velocity)} about {vector(loads.centrifugal.center)}"
     if loads.temperature:
-        points = np.concatenate([edge.polyline() for edge in problem.boundary.edges])
+        points = np.concatenate([edge.polyline() for edge in problem.edges])
         yield f"temperature change {_range(loads.temperature.change.at(points))}"
 
 
@@ -151,7 +151,7 @@ def surface_in_words(surface: RigidSurface) -> str:
 
 def zone_surfaces(problem: Problem) -> list[tuple[str, str, str]]:
     """Name, edges and rigid surface of each contact zone."""
-    zones = problem.contact_zones.items()
+    zones = problem.zones.items()
     return [(name, ", ".join(problem.edges_of(name)), surface_in_words(zone.surface)) for name, zone in zones]
 
 

@@ -41,7 +41,7 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
         add(shown, "Accuracy", f"{asked}; this mesh is only the first one, solve and compare find a better one")
     for load in volume_loads(problem):
         add(shown, "Volume load", load)
-    for name, zone in problem.contact_zones.items():
+    for name, zone in problem.zones.items():
         if isinstance(zone.surface, DeflectedContour):
             add(shown, "Contour", f"of {name}, deflected by {deflected_by(zone.surface, problem)}")
     for name, tool in problem.tools.items():
@@ -86,9 +86,9 @@ def _edge_table(problem: Problem) -> Table:
 def _zone_table(checked: CheckedProblem) -> Table:
     """List the contact zones."""
     table = table_of("contact zone", "edges", "points", "smallest gap", "rigid surface")
-    for name, zone in checked.problem.contact_zones.items():
+    for name, zone in checked.problem.zones.items():
         gap = checked.gaps[name]
-        least = zero_if_negligible(checked.smallest_gaps[name], checked.problem.boundary.size)
+        least = zero_if_negligible(checked.smallest_gaps[name], checked.problem.size)
         smallest = with_unit(number(least), checked.problem.units.length)
         edges, surface = ", ".join(checked.problem.edges_of(name)), surface_in_words(zone.surface)
         table.add_row(*map(Text, (name, edges, f"{len(gap)}", smallest, surface)))

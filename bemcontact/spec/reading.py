@@ -16,6 +16,7 @@ from bemcontact.errors import Issue, KeyPath, ProblemError, SpecError, escaped
 from bemcontact.files.text import place_after, text_of
 from bemcontact.problem import Problem, Variant
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path
+from bemcontact.problem.problem import OF_ONE_BODY
 from bemcontact.problem.readable import readable_part
 from bemcontact.problem.wording import described, number_hint, unknown_word
 from bemcontact.spec.document import Document, LocatedMessage, Mark, Place, error_text
@@ -33,7 +34,7 @@ from bemcontact.spec.yaml_1_2 import (
 
 Changes = Sequence[str] | Mapping[str, object]
 """Changes as texts ``key=value``, or values by key."""
-_REQUIRED = ", ".join(key for key, item in Problem.model_fields.items() if item.is_required())
+_REQUIRED = ", ".join(["name", *OF_ONE_BODY])
 _HINTS = {
     "found character '\\t'": "YAML indents with spaces; replace the tab",
     "mapping values are not allowed": "write key: value with a blank after the colon, and several in one line in "

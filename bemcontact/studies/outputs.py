@@ -131,8 +131,8 @@ def chosen(outputs: Sequence[str] | None, problem: Problem) -> tuple[str, ...]:
         quantity, point, owner = name.partition(".")
         if quantity not in _known() or (point and quantity not in (*OF_ZONES, *OF_MOVERS)):
             raise OptionError(unknown_word("output", name, _known()))
-        if point and quantity in OF_ZONES and owner.split("[")[0] not in problem.contact_zones:
-            raise OptionError(f"output {name}: {unknown_word('contact zone', owner, problem.contact_zones)}")
+        if point and quantity in OF_ZONES and owner.split("[")[0] not in problem.zones:
+            raise OptionError(f"output {name}: {unknown_word('contact zone', owner, problem.zones)}")
     return tuple(dict.fromkeys(part for name in names for part in ALL_OF.get(name, (name,))))
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.contact_points import UnitPressures
 from bemcontact.bem.loading import Loading, particular_solution
 from bemcontact.bem.mesh import BoundaryValues, Mesh, connected
 from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
@@ -86,7 +86,7 @@ def system_of(
     mesh: Mesh, material: Material, values: BoundaryValues, motions: RigidMotions, loads: Loads | None = None
 ) -> System:
     return System(
-        mesh=mesh, material=material, points=ContactPoints.none(mesh), motions=motions,
+        mesh=mesh, material=material, points=UnitPressures.none(), motions=motions,
         loadings=(Loading(values=values, particular=particular_solution(loads or Loads(), material, mesh)),),
     )  # fmt: skip
 

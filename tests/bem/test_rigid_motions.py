@@ -117,7 +117,7 @@ def test_change_of_the_gaps_by_a_tool_is_its_rigid_motion(name: str):
 @pytest.mark.parametrize("name", BODIES)
 def test_work_of_forces_is_force_times_displacement_of_the_point(name: str):
     body = BODIES[name]
-    on_tools = body.motion_load(body.seen)[:, 0] - body.loadings[0].true_work(body.mesh, body.seen.body)
+    on_tools = body.motion_load(body.seen)[:, 0] - body.loadings[0].true_work(body.mesh, body.seen)
     moved = body.seen.tools
     by_hand = sum(np.array(tool.load) @ moved[3 * i : 3 * i + 3] for i, tool in enumerate(body.problem.tools.values()))
     assert on_tools == pytest.approx(by_hand, rel=1e-12, abs=1e-8)  # round-off of a moment of 1e7

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.contact_points import UnitPressures
 from bemcontact.bem.loading import permanent_loading
 from bemcontact.bem.mesh import build
 from bemcontact.bem.outline import Outline
@@ -35,7 +35,7 @@ def field_of(body: Problem) -> StressField:
     loading = permanent_loading(body, mesh)
     motions = free_rigid_motions(mesh, loading.values.displacement_given)
     system = System(
-        mesh=mesh, material=body.material, points=ContactPoints.none(mesh), motions=motions, loadings=[loading]
+        mesh=mesh, material=body.material, points=UnitPressures.none(), motions=motions, loadings=[loading]
     )
     u, t = system.fields(solve_system(system).combined(np.ones(1)), loading)
     return StressField.of(Outline(problem=body, mesh=mesh), u[..., None], t[..., None], [body.loads], np.ones((1, 1)))

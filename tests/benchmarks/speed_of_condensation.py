@@ -34,7 +34,8 @@ def system_of(problem: bemcontact.Problem) -> System:
     """The equations of a body."""
     body = body_of(problem)
     return System(
-        mesh=body.mesh, material=body.problem.material, points=body.points, motions=body.motions,
+        mesh=body.mesh, material=body.problem.material, points=body.points.unit_pressures(body.mesh.parts[0]),
+        motions=body.motions[0],
         loadings=body.loadings,
     )  # fmt: skip
 

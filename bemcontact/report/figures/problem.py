@@ -74,13 +74,13 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     """Draw the body with its mesh, conditions and rigid surfaces; each edge has its name and conditions."""
     _fill_body(axes, problem)
     _draw_mesh(axes, problem, mesh)
-    outline = [edge.points(np.linspace(0, 1, 60)) for edge in problem.boundary.edges]
+    outline = [edge.points(np.linspace(0, 1, 60)) for edge in problem.edges]
     symbols = [*draw_supports(axes, problem), *draw_loads(axes, problem), *_draw_surfaces(axes, problem, mesh)]
     tools = [*draw_tools(axes, problem)]
     drawn = np.concatenate([*outline, *symbols, *(covered for covered, _ in tools)])
     frame_plan(axes, drawn, problem.units.length)
     _draw_legend(axes, problem)
-    names = [_name(problem, edge) for edge in problem.boundary.edges]
+    names = [_name(problem, edge) for edge in problem.edges]
     with without_glyph_warnings():
         taken = place_names(
             axes, [*names, *(name for _, name in tools), *_draw_rotation(axes, problem)], drawn, _polygons(problem)
@@ -91,7 +91,7 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
 
 def role(problem: Problem, edge: str) -> str:
     """Role of an edge: one of `ROLES`."""
-    if any(edge in problem.edges_of(zone) for zone in problem.contact_zones):
+    if any(edge in problem.edges_of(zone) for zone in problem.zones):
         return "may touch"
     conditions = [condition for _, condition in _acting(problem, edge)]
     if not conditions:
@@ -101,8 +101,8 @@ def role(problem: Problem, edge: str) -> str:
 
 def _acting(problem: Problem, edge: str) -> Iterator[tuple[float, Condition]]:
     """Conditions on an edge with their factors: those of the problem and of the load cases that act."""
-    if edge in problem.conditions:
-        yield 1.0, problem.conditions[edge]
+    if edge in problem.edge_conditions:
+        yield 1.0, problem.edge_conditions[edge]
     for case, factor in problem.factors().items():
         if edge in problem.load_cases[case].conditions:
             yield factor, problem.load_cases[case].conditions[edge]
@@ -133,7 +133,7 @@ def _fill_body(axes: Axes, problem: Problem) -> None:
 
 def _polygons(problem: Problem) -> list[Array]:
     """Each loop as a fine polygon (j, 2)."""
-    return [np.concatenate([edge.polyline() for edge in loop]) for loop in problem.boundary.loops]
+    return [np.concatenate([edge.polyline() for edge in loop]) for loop in problem.loops]
 
 
 def _draw_mesh(axes: Axes, problem: Problem, mesh: Mesh) -> None:
@@ -155,9 +155,9 @@ def _spread(edge: Edge, size: float, spots: int, fewest: int = 2) -> tuple[Array
 
 def draw_supports(axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like) -> Iterator[Array]:
     """Draw a clamp as ground and one held axis as rollers that point along it, displaced; yield what they cover."""
-    size = problem.boundary.size
-    for edge in problem.boundary.edges:
-        held = problem.conditions.get(edge.name, FREE).displacement
+    size = problem.size
+    for edge in problem.edges:
+        held = problem.edge_conditions.get(edge.name, FREE).displacement
         if len(held.given) == 2:
             fractions = np.linspace(0, 1, 61)
             points = edge.points(fractions)
@@ -176,11 +176,11 @@ def draw_loads(axes: Axes, problem: Problem, displacement: Displacement = np.zer
 
     Tractions along an edge are drawn beside it.
     """
-    size = problem.boundary.size
-    across = [_spread(edge, size, 20) for edge in problem.boundary.edges]
-    tractions = [_traction(problem, e.name, *at) for e, at in zip(problem.boundary.edges, across, strict=True)]
+    size = problem.size
+    across = [_spread(edge, size, 20) for edge in problem.edges]
+    tractions = [_traction(problem, e.name, *at) for e, at in zip(problem.edges, across, strict=True)]
     largest = max(float(np.hypot(*traction.T).max()) for traction in tractions)
-    for edge, (points, normals), traction in zip(problem.boundary.edges, across, tractions, strict=True):
+    for edge, (points, normals), traction in zip(problem.edges, across, tractions, strict=True):
         if not traction.any():
             continue
         moved = points + displacement(points)
@@ -210,8 +210,8 @@ def _draw_rotation(axes: Axes, problem: Problem) -> Iterator[Name]:
 
 def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
     """Draw the rigid surfaces opposite the body with their normals."""
-    size = problem.boundary.size
-    for name, zone in problem.contact_zones.items():
+    size = problem.size
+    for name, zone in problem.zones.items():
         if isinstance(zone.surface, DeflectedContour):
             continue
         points, normals = surface_line(problem, name, 0.12 * size)
@@ -225,7 +225,7 @@ def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
 
 def _draw_contours(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
     """Draw each edge opposite a deflected contour again, displaced by the gap."""
-    size = problem.boundary.size
+    size = problem.size
     for name, (feet, normals) in contours(problem, mesh).items():
         for edge in problem.edges_of(name):
             elements = mesh.elements[mesh.edge == mesh.edge_names.index(edge)]
@@ -237,7 +237,7 @@ def _draw_contours(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
 
 def _facing(problem: Problem, zone: str, count: int = 60) -> Array:
     """Points (k, 2) of the boundary that may touch in a zone, in order."""
-    names = problem.edges_of(zone) or [edge.name for edge in problem.boundary.edges]
+    names = problem.edges_of(zone) or [edge.name for edge in problem.edges]
     return np.concatenate([problem.edge(name).points(np.linspace(0, 1, count)) for name in names])
 
 
@@ -252,13 +252,13 @@ def surface_line(problem: Problem, zone: str, overhang: float) -> tuple[Array, A
 
     A plane that is the face of a punch has no overhang: it ends where the boundary beside the zone lies in it.
     """
-    surface, facing, size = problem.contact_zones[zone].surface, _facing(problem, zone), problem.boundary.size
+    surface, facing, size = problem.zones[zone].surface, _facing(problem, zone), problem.size
     assert not isinstance(surface, DeflectedContour)
     match surface:
         case Plane():
             normal = np.array(surface.unit_normal)
             along = np.array([normal[1], -normal[0]])
-            beside = [edge for edge in problem.boundary.edges if edge.name not in problem.edges_of(zone)]
+            beside = [edge for edge in problem.edges if edge.name not in problem.edges_of(zone)]
             others = np.array([edge.points(np.array([0.5]))[0] for edge in beside]).reshape(-1, 2)
             flush = (others[np.abs(surface.closest(others)[0]) < FLUSH * size] - surface.point) @ along
             s = (facing - surface.point) @ along
@@ -303,7 +303,7 @@ def _name(problem: Problem, edge: Edge) -> Name:
     """Prepare the text at an edge: its name, and what is prescribed there."""
     fractions = np.array([0.5, 0.4, 0.6, 0.25, 0.75, 0.12, 0.88])
     anchors, outward = edge.points(fractions), edge.normals(fractions)
-    ends = np.array([0.02, 0.98] if edge.length < SHORT * problem.boundary.size else [])
+    ends = np.array([0.02, 0.98] if edge.length < SHORT * problem.size else [])
     slanted = (edge.normals(ends) + edge.directions(ends) * np.sign(ends - 0.5)[:, None]) / np.sqrt(2)
     return Name(
         text="\n".join(
@@ -322,7 +322,7 @@ def _symbols(text: str) -> str:
 
 def _draw_legend(axes: Axes, problem: Problem) -> None:
     """Explain the colors in the picture, and list the loads on the volume."""
-    occurring = {role(problem, edge.name) for edge in problem.boundary.edges}
+    occurring = {role(problem, edge.name) for edge in problem.edges}
     handles = [Line2D([], [], color=c, linewidth=2.5, label=name) for name, c in ROLES.items() if name in occurring]
     handles.append(Line2D([], [], color=GREY, linewidth=1.3, label="rigid surface, normal"))
     handles += [Line2D([], [], linestyle="none", label=load) for load in volume_loads(problem)]
@@ -346,7 +346,7 @@ def draw_tools(axes: Axes, problem: Problem) -> Iterator[tuple[Array, Name]]:
         for components, color in ((action.position, BLUE), (action.load, GREEN)):
             if not any(components[:2]):
                 continue
-            arrow = REACH * problem.boundary.size * np.array(components[:2]) / np.linalg.norm(components[:2])
+            arrow = REACH * problem.size * np.array(components[:2]) / np.linalg.norm(components[:2])
             tail = place - arrow if arrow @ normal > 0 else place
             covered.append(draw_arrows(axes, tail[None], arrow[None], color))
         phrases = tool_in_words(action, problem.units).split("; ")
@@ -357,12 +357,12 @@ def draw_tools(axes: Axes, problem: Problem) -> Iterator[tuple[Array, Name]]:
 def _place(problem: Problem, tool: str) -> tuple[Array, Array]:
     """Position (2,) of the force on a tool, and the normal (2,) of its surface into the body."""
     stated = problem.tools[tool]
-    zone, facing = problem.contact_zones[stated.zones[0]], _facing(problem, stated.zones[0], 61)
+    zone, facing = problem.zones[stated.zones[0]], _facing(problem, stated.zones[0], 61)
     if isinstance(zone.surface, DeflectedContour):
         foot, normal = facing[len(facing) // 2], np.array(zone.surface.unit_direction)
     else:
         gap, normals = zone.surface.closest(facing)
-        at = _nearest(gap, problem.boundary.size)
+        at = _nearest(gap, problem.size)
         foot, normal = facing[at] - gap[at] * normals[at], normals[at]
     return (foot if stated.point is None else np.array(stated.point)), normal
 

@@ -29,7 +29,7 @@ def surfaces_of(
     tools = result.contact.tools
     moves = dict(zip(tools.names, tools.displacement(result.solution.rigid_amplitudes), strict=True))
     points = dict(zip(tools.names, tools.point, strict=True))
-    for number, (name, zone) in enumerate(problem.contact_zones.items()):
+    for number, (name, zone) in enumerate(problem.zones.items()):
         nearest = _nearest_points(result, number)
         if isinstance(zone.surface, DeflectedContour) or (factor > 1 and _turn(result.contact.normals[nearest]) > TURN):
             yield from ground_of(result, number, near, factor)

@@ -1,0 +1,183 @@
+"""The division of edges into elements: as the edges state it, and where two elastic bodies face each other, matched.
+
+Contact points of two elastic bodies are pairs: a node of the first body and its closest point on the second one, which
+has a node there. So the elements of the second body end where those of the first have their closest points.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from bemcontact.arrays import Array
+from bemcontact.problem.body_surface import BodySurface
+from bemcontact.problem.curves import Edge
+from bemcontact.problem.pairing import OppositePart
+from bemcontact.problem.problem import Problem
+
+NEAR = 0.3
+"""Part of an element up to which one of its ends moves to where an opposite part ends, instead of a new end there."""
+SAME = 1e-11
+"""Difference of two fractions of an edge up to which they are one element end."""
+
+
+class Facing(NamedTuple):
+    """An element of an edge, counted along it, and the one on another edge that it faces."""
+
+    edge: str
+    element: int
+    onto: str
+    opposite: int
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Division:
+    """All elements of a problem.
+
+    Parameters
+    ----------
+    fractions : (e, 3) of the length of each edge at start, middle and end of its elements
+    facing : pairs of elements that face each other, by contact of two elastic bodies
+    """
+
+    fractions: Mapping[str, Array]
+    facing: Mapping[str, Sequence[Facing]]
+
+
+class Matched(NamedTuple):
+    """A part of an edge of the first body, and the edge that it is opposite to."""
+
+    contact: str
+    part: OppositePart
+    onto: str
+    surface: BodySurface
+
+
+def divided(problem: Problem) -> Division:
+    """Divide all edges of a problem into its elements, each cut as its mesh says."""
+    refine, edges = problem.mesh.refine, {edge.name: edge for edge in problem.edges}
+    matched = [*matched_parts(problem)]
+    if not matched:
+        return Division(fractions={name: _thirds(edge.breakpoints(refine)) for name, edge in edges.items()}, facing={})
+    ends = {name: edge.breakpoints(1) for name, edge in edges.items()}
+    for name, edge in edges.items():
+        places = {end for item in matched if item.part.edge == name for end in item.part[1:3]}
+        ends[name] = _with_ends(ends[name], sorted(places), edge)
+    fractions: dict[str, Array] = {}
+    facing: dict[str, list[Facing]] = {item.contact: [] for item in matched}
+    for name in in_order(edges, matched):
+        onto = [item for item in matched if item.onto == name]
+        ends[name], fractions[name], pairs = _matched(ends[name], onto, ends, edges, fractions, refine)
+        for contact, pair in pairs:
+            facing[contact].append(pair)
+    return Division(fractions=fractions, facing=facing)
+
+
+def matched_parts(problem: Problem) -> Iterator[Matched]:
+    """Opposite parts of all contacts of two elastic bodies."""
+    for contact in problem.contacts:
+        surface = problem.zones[contact].surface
+        if isinstance(surface, BodySurface) and surface.elastic:
+            for part in problem.opposite(contact):
+                yield Matched(contact, part, surface.edges[part.onto].name, surface)
+
+
+def in_order(edges: Mapping[str, Edge], matched: Sequence[Matched]) -> list[str]:
+    """Names of edges, each behind those that its elements follow."""
+    before = {name: {item.part.edge for item in matched if item.onto == name} for name in edges}
+    order: list[str] = []
+    while before:
+        ready = [name for name, others in before.items() if not others & before.keys()]
+        assert ready, "a check of the problem refuses circles"
+        order += ready
+        for name in ready:
+            del before[name]
+    return order
+
+
+def feet(item: Matched, edge: Edge, at: Array) -> Array:
+    """Fractions (k,) of the opposite edge at the closest points of places (k,) of an edge."""
+    return item.surface.edges[item.part.onto].curve.nearest(edge.points(at))
+
+
+def _thirds(ends: Array) -> Array:
+    """Start, middle and end (e, 3) of elements with these ends (e + 1,)."""
+    return np.column_stack([ends[:-1], (ends[:-1] + ends[1:]) / 2, ends[1:]])
+
+
+def _with_ends(ends: Array, places: Sequence[float], edge: Edge) -> Array:
+    """Element ends (e + 1,) with ends at some places too; a near one that nothing fixes moves there."""
+    fixed = {0.0, 1.0, *edge.ends_at, *([] if isinstance(edge.towards, str) else [edge.towards])}
+    for place in places:
+        i = int(np.abs(ends - place).argmin())
+        if abs(ends[i] - place) <= SAME:
+            ends = np.concatenate([ends[:i], [place if 0 < i < len(ends) - 1 else ends[i]], ends[i + 1 :]])
+            fixed.add(place)
+            continue
+        at = int(np.searchsorted(ends, place))
+        length = ends[at] - ends[at - 1]
+        if abs(ends[i] - place) < NEAR * length and not any(abs(ends[i] - other) <= SAME for other in fixed):
+            ends = np.concatenate([ends[:i], ends[i + 1 :]])
+            at = int(np.searchsorted(ends, place))
+        ends = np.insert(ends, at, place)
+        fixed.add(place)
+    return ends
+
+
+def _matched(
+    own: Array,
+    onto: Sequence[Matched],
+    ends: Mapping[str, Array],
+    edges: Mapping[str, Edge],
+    fractions: Mapping[str, Array],
+    refine: int,
+) -> tuple[Array, Array, list[tuple[str, Facing]]]:
+    """Ends (e + 1,) before they are cut, elements (e, 3) of an edge that follows others, and pairs that face each other.
+
+    Elements that follow none are cut in equal parts; those that do have the nodes that the closest points give.
+    """
+    covered: list[tuple[Array, Matched, int]] = []  # closest points of element ends, ascending
+    for item in onto:
+        other = ends[item.part.edge]
+        first, last = (int(np.abs(other - end).argmin()) for end in item.part[1:3])
+        places = _snapped(feet(item, edges[item.part.edge], other[first : last + 1]))
+        covered.append((places[::-1], item, last))
+    keep = np.ones(len(own), bool)
+    for places, _, _ in covered:
+        at = np.clip(np.searchsorted(own, places[[0, -1]]), 1, len(own) - 1)
+        near = NEAR * (own[at] - own[at - 1])
+        keep[1:-1] &= ~((own[1:-1] > places[0] - near[0]) & (own[1:-1] < places[-1] + near[1]))
+    every = np.concatenate([own[keep], *(places for places, _, _ in covered)])
+    every = np.sort(every)
+    every = every[np.append(True, np.diff(every) > SAME)]
+    every[0], every[-1] = 0.0, 1.0
+    pieces, pairs = list[Array](), list[tuple[str, Facing]]()
+    follows: dict[int, tuple[Matched, int]] = {}
+    for places, item, last in covered:
+        begin = int(np.abs(every - places[0]).argmin())
+        every[begin : begin + len(places)] = places
+        follows |= {begin + i: (item, last - 1 - i) for i in range(len(places) - 1)}
+    for element in range(len(every) - 1):
+        number = len(pieces) * refine
+        if element not in follows:
+            steps = np.linspace(every[element], every[element + 1], refine + 1)
+            steps[-1] = every[element + 1]
+            pieces.append(_thirds(steps))
+            continue
+        item, other = follows[element]
+        name = item.part.edge
+        theirs = fractions[name][other * refine : (other + 1) * refine]
+        images = _snapped(feet(item, edges[name], theirs.ravel())).reshape(-1, 3)[::-1, ::-1]
+        images[0, 0], images[-1, 2] = every[element], every[element + 1]
+        images[1:, 0] = images[:-1, 2]
+        pieces.append(images)
+        pairs += [
+            (item.contact, Facing(name, other * refine + refine - 1 - i, item.onto, number + i)) for i in range(refine)
+        ]
+    return every, np.concatenate(pieces), pairs
+
+
+def _snapped(fractions: Array) -> Array:
+    """Fractions of an edge of which those at its ends up to round-off are there."""
+    return np.where(fractions < SAME, 0.0, np.where(fractions > 1 - SAME, 1.0, fractions))

@@ -1,0 +1,189 @@
+"""Checks of several bodies against each other: names first, then which parts can meet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from bemcontact.errors import Issue, KeyPath
+from bemcontact.problem.bodies import SEPARATOR, BodySpec, qualified
+from bemcontact.problem.conditions import Loads
+from bemcontact.problem.rigid_surface import DeflectedContour
+from bemcontact.problem.validation import KeyIssue
+from bemcontact.problem.wording import unknown_word
+
+if TYPE_CHECKING:
+    from bemcontact.problem.problem import Problem
+
+
+def body_issues(problem: Problem) -> Iterator[Issue]:
+    """Issues of the bodies themselves: what belongs to each of them, copies, materials, conditions."""
+    for key, given in (
+        ("material", problem.material is not None),
+        ("boundary", problem.boundary is not None),
+        ("conditions", bool(problem.conditions)),
+        ("loads", problem.loads != Loads()),
+    ):
+        if given:
+            yield KeyIssue(path=(key,), message=f"with several bodies {key} belongs to each of them: bodies.NAME.{key}")
+    for name, body in problem.bodies.items():
+        yield from _copy_issues(problem, name, body)
+        if isinstance(body.material, str) and body.material not in problem.materials:
+            message = unknown_word("material", body.material, problem.materials)
+            yield Issue(path=("bodies", name, "material"), message=message)
+        original = problem.bodies.get(body.copy_of or name)
+        if original is not None and original.boundary is not None:
+            edges = [edge.name for edge in original.boundary.edges]
+            for edge in body.conditions:
+                if edge not in edges:
+                    message = unknown_word("edge", edge, edges)
+                    yield KeyIssue(path=("bodies", name, "conditions", edge), message=message)
+    if all(body.rigid for body in problem.bodies.values()):
+        yield Issue(path=("bodies",), message="all bodies are rigid; at least one has to be elastic")
+
+
+def _copy_issues(problem: Problem, name: str, body: BodySpec) -> Iterator[Issue]:
+    """Issues of a copy of another body."""
+    if body.copy_of is None:
+        return
+    path: KeyPath = ("bodies", name, "copy_of")
+    originals = [other for other, spec in problem.bodies.items() if spec.copy_of is None]
+    if body.copy_of not in problem.bodies:
+        yield Issue(path=path, message=unknown_word("body", body.copy_of, originals))
+    elif body.copy_of not in originals:
+        of = problem.bodies[body.copy_of].copy_of
+        yield Issue(path=path, message=f"'{body.copy_of}' is a copy itself; name its original '{of}'")
+    else:
+        original = problem.bodies[body.copy_of]
+        for key, its, own in (
+            ("conditions", original.conditions, body.conditions),
+            ("loads", original.loads != Loads(), body.loads != Loads()),
+        ):
+            if its and not own:
+                what = f"'{body.copy_of}' has {key}, and a copy does not take them over"
+                yield Issue(path=path, message=f"{what}; state those of '{name}', or make it a body of its own")
+        if original.rigid and (body.conditions or body.loads != Loads()):
+            yield Issue(path=path, message=f"'{body.copy_of}' is rigid, so that its copy has no conditions and no loads")
+
+
+def contact_issues(problem: Problem) -> Iterator[Issue]:
+    """Issues of contacts, zones and load cases that name what does not exist, or what cannot touch."""
+    if not problem.contacts and not problem.contact_zones:
+        message = "nothing touches; give contacts between bodies, such as contacts: {track: {between: [roller, rail]}}"
+        yield Issue(path=("contacts",), message=message)
+    edges = [edge.name for edge in problem.edges]
+    for name, contact in problem.contacts.items():
+        path: KeyPath = ("contacts", name)
+        if name in problem.contact_zones:
+            yield KeyIssue(path=path, message=f"a contact zone has the name '{name}' already; give another name")
+        sides = [
+            issue for number in (0, 1) for issue in _side_issues(problem, contact.between[number], (*path, "between"), number)
+        ]
+        yield from sides
+        if not sides:
+            yield from _pair_issues(problem, contact.between, (*path, "between"))
+    for name, zone in problem.contact_zones.items():
+        if isinstance(zone.surface, DeflectedContour):
+            message = "a deflected contour is that of an only body; state this problem without bodies"
+            yield Issue(path=("contact_zones", name, "surface"), message=message)
+        for i, edge in enumerate(zone.edges or ()):
+            if edge not in edges:
+                yield Issue(path=("contact_zones", name, "edges", i), message=unknown_word("edge", edge, edges))
+            elif edge in problem.edge_conditions:
+                message = f"edge '{edge}' has a condition and cannot touch; remove one of the two"
+                yield Issue(path=("contact_zones", name, "edges", i), message=message)
+    yield from _case_issues(problem, edges)
+    yield from _tool_issues(problem)
+
+
+def _side_issues(problem: Problem, side: Sequence[str], path: KeyPath, number: int) -> Iterator[Issue]:
+    """Issues of one side of a contact."""
+    bodies = {name.partition(SEPARATOR)[0] for name in side}
+    if len(bodies) > 1:
+        yield Issue(path=(*path, number), message=f"the edges of one side are of one body, found {', '.join(sorted(bodies))}")
+        return
+    for i, entry in enumerate(side):
+        here = (*path, number) if len(side) == 1 else (*path, number, i)
+        body, separator, edge = entry.partition(SEPARATOR)
+        if body not in problem.bodies:
+            yield Issue(path=here, message=unknown_word("body", body, problem.bodies))
+            return
+        own = [item.name for item in problem.boundary_of(body).edges]
+        if separator and edge not in own:
+            yield Issue(path=here, message=unknown_word("edge", entry, [qualified(body, name) for name in own]))
+        elif not separator and len(side) > 1:
+            yield Issue(path=here, message=f"'{entry}' is a whole body; leave the edges of this side out, or name its edges")
+        elif separator and edge in problem.bodies[body].conditions:
+            message = f"edge '{entry}' has a condition and cannot touch; remove one of the two"
+            yield Issue(path=here, message=message)
+
+
+def _pair_issues(problem: Problem, between: tuple[Sequence[str], Sequence[str]], path: KeyPath) -> Iterator[Issue]:
+    """Issues of the two sides of a contact together."""
+    first, second = (side[0].partition(SEPARATOR)[0] for side in between)
+    if all(problem.bodies[problem.bodies[name].copy_of or name].rigid for name in (first, second)):
+        yield Issue(path=path, message=f"'{first}' and '{second}' are both rigid; one of them has to be elastic")
+    if both := {*between[0]} & {*between[1]}:
+        yield Issue(path=path, message=f"'{min(both)}' is on both sides; contact is between two of them")
+    elif first == second and (between[0] == (first,) or between[1] == (second,)):
+        yield Issue(path=path, message=f"name the edges of '{first}' on both sides that may touch each other")
+
+
+def _case_issues(problem: Problem, edges: Sequence[str]) -> Iterator[Issue]:
+    """Issues of load cases that name what does not exist."""
+    elastic = [part.name for part in problem.parts]
+    for name, case in problem.load_cases.items():
+        if case.loads != Loads():
+            message = f"with several bodies loads belong to each of them: load_cases.{name}.bodies.NAME"
+            yield KeyIssue(path=("load_cases", name, "loads"), message=message)
+        for body in case.bodies:
+            if body not in elastic:
+                message = unknown_word("elastic body", body, elastic)
+                yield KeyIssue(path=("load_cases", name, "bodies", body), message=message)
+        for edge in case.conditions:
+            if edge not in edges:
+                message = unknown_word("edge", edge, edges)
+                yield KeyIssue(path=("load_cases", name, "conditions", edge), message=message)
+
+
+def _tool_issues(problem: Problem) -> Iterator[Issue]:
+    """Issues of tools that would move an elastic body."""
+    for name, tool in problem.tools.items():
+        for zone in tool.zones:
+            if zone in problem.contacts and all(
+                not problem.bodies[problem.bodies[body].copy_of or body].rigid
+                for body in (side[0].partition(SEPARATOR)[0] for side in problem.contacts[zone].between)
+                if body in problem.bodies
+            ):
+                message = f"'{zone}' is a contact of two elastic bodies, and a tool is rigid; move a body by a condition"
+                yield Issue(path=("tools", name, "zones"), message=message)
+
+
+def opposite_issues(problem: Problem) -> Iterator[Issue]:
+    """Issues of contacts whose two sides cannot meet, and of meshes that would follow each other in a circle."""
+    follows: dict[str, set[str]] = {}
+    for name, contact in problem.contacts.items():
+        path: KeyPath = ("contacts", name, "between")
+        surface, edges = problem.zones[name].surface, problem.edges_of(name)
+        if not edges:
+            yield Issue(path=path, message="no edge of the first side is turned to the second one and can see it")
+        elif getattr(surface, "elastic", False):
+            parts = problem.opposite(name)
+            if not parts:
+                sides = " and ".join(", ".join(side) for side in contact.between)
+                yield Issue(path=path, message=f"{sides} are nowhere opposite to each other; look at their places and normals")
+            for part in parts:
+                follows.setdefault(surface.edges[part.onto].name, set()).add(part.edge)  # pyright: ignore[reportAttributeAccessIssue]
+    if circle := _circle(follows):
+        names = ", ".join(f"'{name}'" for name in circle)
+        message = f"the meshes of {names} would follow each other in a circle; exchange the sides of one contact"
+        yield Issue(path=("contacts",), message=message)
+
+
+def _circle(follows: dict[str, set[str]]) -> list[str]:
+    """Edges of which each follows the next one, and the last one the first; empty if there are none."""
+    left = {name: {*before} for name, before in follows.items()}
+    while ready := [name for name, before in left.items() if not before & left.keys()]:
+        for name in ready:
+            del left[name]
+    return sorted(left)

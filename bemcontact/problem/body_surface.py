@@ -1,0 +1,143 @@
+"""The boundary of a body as the surface that another body touches."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import chain
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.problem.curves import Curve, Edge, cross
+from bemcontact.problem.surface_lines import Closest, Faces
+
+AT_END = 1e-9
+"""Sine of the angle between the way to the end of an edge and the normal there from which the end itself is nearest."""
+CORNER = 1e-6
+"""Sine of the angle between two edges from which their joint is a corner."""
+
+
+class Feet(NamedTuple):
+    """Places of a surface that are nearest to points.
+
+    Parameters
+    ----------
+    edge : (k,) number of the edge
+    fraction : (k,) of its length
+    points : (k, 2) [L]
+    gap : (k,) distance as drawn [L], negative inside the body
+    normals : (k, 2) unit vectors out of the body
+    corner : (k,) whether it is a corner or an end of the surface, so that other points have it too
+    """
+
+    edge: IntArray
+    fraction: Array
+    points: Array
+    gap: Array
+    normals: Array
+    corner: BoolArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BodySurface:
+    """Some or all edges of a body, as the surface that another body touches.
+
+    Parameters
+    ----------
+    body : its name
+    elastic : whether it is elastic
+    edges : that may be touched, with their names in the problem
+    loops : all loops of the body
+    offset : what is added to the gap as drawn [L]
+    nearest : fractions of curves where they are nearest to it, as far as they were looked for
+    """
+
+    kind: ClassVar[str] = "body"
+    body: str
+    elastic: bool
+    edges: tuple[Edge, ...]
+    loops: tuple[tuple[Edge, ...], ...]
+    offset: float = 0.0
+    nearest: dict[Curve, tuple[float, ...]] = field(default_factory=dict)
+
+    @cached_property
+    def _ends(self) -> tuple[Array, BoolArray]:
+        """Sums (e, 2, 2) of the normals at both joints of each edge, and whether (e, 2) each is a corner or an end."""
+        sums, corners = [], []
+        names = {edge.name for edge in self.edges}
+        for edge, before, after in _neighbors(self.loops):
+            if edge.name in names:
+                own = edge.normals(np.array([0.0, 1.0]))
+                others = np.stack([before.normals(np.ones(1))[0], after.normals(np.zeros(1))[0]])
+                sums.append(own + others)
+                sharp = (abs(cross(own, others)) > CORNER) | (np.sum(own * others, axis=1) < 0)
+                corners.append(sharp | np.array([other.name not in names for other in (before, after)]))
+        return np.array(sums), np.array(corners)
+
+    def feet(self, points: Array) -> Feet:
+        """Places that are nearest to points (k, 2) [L]."""
+        points = np.asarray(points, float)
+        fractions = np.array([edge.curve.nearest(points) for edge in self.edges])
+        places = np.array([edge.points(at) for edge, at in zip(self.edges, fractions, strict=True)])
+        away = np.hypot(*np.moveaxis(points - places, 2, 0))
+        number, rows = away.argmin(axis=0), np.arange(len(points))
+        fraction, foot = fractions[number, rows], places[number, rows]
+        normals = np.empty_like(foot)
+        for i in sorted({*number.tolist()}):
+            normals[number == i] = self.edges[i].normals(fraction[number == i])
+        offset, (sums, corners) = points - foot, self._ends
+        corner = np.zeros(len(points), bool)
+        for end in (0, 1):
+            at = np.flatnonzero((fraction == end) & corners[number, end])
+            tilted = abs(cross(offset[at], normals[at])) > AT_END * away[number[at], at]
+            at = at[tilted & (away[number[at], at] > 0)]
+            side = np.where(np.sum(offset[at] * sums[number[at], end], axis=1) < 0, -1.0, 1.0)
+            normals[at], corner[at] = side[:, None] * offset[at] / away[number[at], at, None], True
+        return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner)
+
+    def closest(self, points: Array) -> Closest:
+        """Gap and normal at points (k, 2) [L]; the gap has the offset."""
+        feet = self.feet(points)
+        return Closest(feet.gap + self.offset, feet.normals)
+
+    def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
+        """Find the faces that hold points (k, 2) [L], as of `Polyline`.
+
+        A corner of the other body, with normals (k, 2, 2) into it on either side, may stand in a concave corner of this
+        one, up to the distance `reach` (k,) [L]. Each side has the edge to which it is turned then.
+        """
+        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in self.closest(points))
+        turns = abs(cross(inward[:, 0], inward[:, 1])) > CORNER
+        for joint, own in self._grooves:
+            at = np.flatnonzero(turns & (np.hypot(*(points - joint).T) <= reach))
+            turned = np.einsum("kai,si->kas", inward[at], own)
+            for column, side in ((0, 0), (2, 1)):
+                chosen = own[turned[:, side].argmax(axis=1)]
+                normals[at, column] = chosen
+                gap[at, column] = np.sum((points[at] - joint) * chosen, axis=1) + self.offset
+        return Faces(gap, normals, normals.copy())
+
+    @cached_property
+    def _grooves(self) -> list[tuple[Array, Array]]:
+        """Concave corners between two edges of the surface: point (2,) and both normals (2, 2) out of the body."""
+        names, grooves = {edge.name for edge in self.edges}, []
+        for edge, _, after in _neighbors(self.loops):
+            if edge.name in names and after.name in names:
+                own = np.stack([edge.normals(np.ones(1))[0], after.normals(np.zeros(1))[0]])
+                if cross(own[0], own[1]) < -CORNER:
+                    grooves.append((np.array(edge.end), own))
+        return grooves
+
+
+def _neighbors(loops: Sequence[Sequence[Edge]]) -> Iterable[tuple[Edge, Edge, Edge]]:
+    """Each edge with the one before and the one after it."""
+    return chain.from_iterable(zip(loop, (loop[-1], *loop[:-1]), (*loop[1:], loop[0]), strict=True) for loop in loops)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BodyZone:
+    """Edges of one body that may touch another one, as `ContactZone` has them for a rigid surface."""
+
+    edges: tuple[str, ...]
+    surface: BodySurface

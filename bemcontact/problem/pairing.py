@@ -1,0 +1,81 @@
+"""Which parts of the edges of two elastic bodies are opposite to each other."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from bemcontact.arrays import Array, IntArray
+from bemcontact.problem.body_surface import BodySurface
+from bemcontact.problem.curves import Edge
+from bemcontact.problem.visibility import turned_to
+
+SAMPLES = 512
+"""Samples of an edge between which it has at most one end of an opposite part."""
+HALVINGS = 60
+"""Halvings of the part of an edge in which such an end is."""
+SHORTEST = 1e-9
+"""Least length of an opposite part over that of its edge: shorter ones are round-off of coordinates."""
+SAME = 1e-12
+"""Difference of two fractions of an edge that is round-off."""
+
+
+class OppositePart(NamedTuple):
+    """A part of an edge of the first body with its closest points on one edge of the second body.
+
+    Parameters
+    ----------
+    edge : name of the edge
+    low, high : fractions of its length between which it is
+    onto : number of the opposite edge in the surface
+    """
+
+    edge: str
+    low: float
+    high: float
+    onto: int
+
+
+def opposite_parts(edges: Sequence[Edge], surface: BodySurface) -> list[OppositePart]:
+    """Parts of edges opposite to a surface, in order.
+
+    A place is opposite to the surface if it is turned to it, and its closest point there is no corner: pairs of points
+    need closest points of their own.
+    """
+    return [part for edge in edges for part in _parts_of(edge, surface)]
+
+
+def _parts_of(edge: Edge, surface: BodySurface) -> list[OppositePart]:
+    """Opposite parts of one edge."""
+
+    def opposite(at: Array) -> IntArray:
+        feet = surface.feet(edge.points(at))
+        turned = turned_to(-edge.normals(at), feet.normals)
+        return np.where(turned & ~feet.corner, feet.edge, -1)
+
+    at = np.linspace(0.0, 1.0, SAMPLES + 1)
+    onto = opposite(at)
+    changes = np.flatnonzero(np.diff(onto))
+    starts, ends = [(0.0, int(onto[0]))], []
+    for i in changes.tolist():
+        low, high = float(at[i]), float(at[i + 1])
+        ends.append(_last(opposite, low, high, int(onto[i])))
+        starts.append((_last(opposite, high, low, int(onto[i + 1])), int(onto[i + 1])))
+    ends.append(1.0)
+    return [
+        OppositePart(edge.name, low, high, number)
+        for (low, number), high in zip(starts, ends, strict=True)
+        if number >= 0 and high - low > SHORTEST
+    ]
+
+
+def _last(opposite: Callable[[Array], IntArray], start: float, stop: float, number: int) -> float:
+    """Last place from a start towards a stop that is opposite to the edge of a number."""
+    for _ in range(HALVINGS):
+        middle = (start + stop) / 2
+        if opposite(np.array([middle]))[0] == number:
+            start = middle
+        else:
+            stop = middle
+    ends = (edge_end for edge_end in (0.0, 1.0) if abs(start - edge_end) <= SAME)
+    return next(ends, start)
