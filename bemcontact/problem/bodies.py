@@ -13,7 +13,7 @@ from bemcontact.problem.contact_zone import Names
 from bemcontact.problem.curves import Edge, Pair, unit_vector
 from bemcontact.problem.geometry import AnyEdge, Line
 from bemcontact.problem.material import Material
-from bemcontact.problem.validation import Flag, Name, Number, Point, SpecModel, invalid
+from bemcontact.problem.validation import Flag, Name, Number, Point, SpecModel, invalid, left_out
 from bemcontact.problem.wording import described
 
 SEPARATOR = "/"
@@ -49,7 +49,7 @@ class BodySpec(SpecModel):
     """Whether the body is rigid. A rigid body has a boundary only, and stays where it is unless it is a tool."""
     material: Annotated[Material | Name | None, WrapValidator(_stated_material)] = None
     """The material of the body, or the name of one of the materials."""
-    boundary: Boundary | None = None
+    boundary: Boundary = left_out()
     """The boundary of the body."""
     conditions: dict[Name, Condition] = Field(default_factory=dict)
     """The conditions on the edges of this body, by edge name. An edge that is left out is free of traction."""
@@ -63,6 +63,14 @@ class BodySpec(SpecModel):
     """The rotation of a copy in degrees, counterclockwise."""
     about: Point = (0.0, 0.0)
     """The point [x, y] about which a copy is rotated."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _without_nothing(cls, data: Any) -> Any:
+        """Leave out the boundary that a copy does not have, as its dump has it."""
+        if isinstance(data, Mapping) and data.get("copy_of") is not None and data.get("boundary", 0) is None:
+            return {key: value for key, value in data.items() if key != "boundary"}
+        return data
 
     @model_validator(mode="after")
     def _one_form(self) -> Self:

@@ -31,6 +31,9 @@ def parsed_path(text: str) -> KeyPath:
 
 
 NAMED: Mapping[str | int, str] = {
+    "materials": "material",
+    "bodies": "body",
+    "contacts": "contact",
     "contact_zones": "contact zone",
     "tools": "tool",
     "load_cases": "load case",

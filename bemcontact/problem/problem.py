@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import (
+    ConfigDict,
     Field,
     ModelWrapValidatorHandler,
     PrivateAttr,
@@ -61,6 +62,7 @@ from bemcontact.problem.validation import (
     Title,
     invalid,
     issues_of,
+    left_out,
     missing_keys,
 )
 from bemcontact.problem.variant import Variant, issues_of_values
@@ -109,6 +111,9 @@ class Problem(SpecModel):
         With an issue and its key path for each mistake. `bemcontact.condense` checks whether the body is held.
     """
 
+    model_config = ConfigDict(
+        json_schema_extra={"anyOf": [{"required": [*OF_ONE_BODY]}, {"required": ["bodies"]}]},
+    )
     root: ClassVar[bool] = True
 
     name: Title
@@ -117,9 +122,9 @@ class Problem(SpecModel):
     """A description of the problem: its source, and what is known about its solution."""
     units: Units = Units()
     """The labels of the units."""
-    material: Material | None = None
+    material: Material = left_out()
     """The material of the body: young_modulus and poisson_ratio."""
-    boundary: Boundary | None = None
+    boundary: Boundary = left_out()
     """The boundary of the body: the edges of its outer loop, and of its holes."""
     materials: dict[Name, Material] = Field(default_factory=dict)
     """The materials of several bodies, by name."""
@@ -131,9 +136,7 @@ class Problem(SpecModel):
     """The conditions on edges, by edge name. An edge that is left out is free of traction."""
     loads: Loads = Loads()
     """The loads on the volume of the body."""
-    contact_zones: Annotated[dict[Name, ContactZone], Field(json_schema_extra={"minProperties": 1})] = Field(
-        default_factory=dict
-    )
+    contact_zones: dict[Name, ContactZone] = Field(default_factory=dict, json_schema_extra={"minProperties": 1})
     """The contact zones by name, each with edges and the rigid surface that they may touch."""
     tools: dict[Name, RigidTool] = Field(default_factory=dict)
     """The tools by name: rigid surfaces that are displaced, or loaded and free to move; others are fixed."""
@@ -169,12 +172,14 @@ class Problem(SpecModel):
     @classmethod
     def _consistent(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         """Check the parts against each other; if some parts are wrong, check the others."""
+        if isinstance(data, Mapping) and data.get("bodies"):
+            data = {key: value for key, value in data.items() if value is not None or key not in OF_ONE_BODY}
         try:
             problem = handler(data)
             raw, issues = RawValue((), problem), []
         except ValidationError as error:
             problem, raw, issues = None, RawValue((), data), issues_of(error)
-        issues += cls._missing_parts(raw)
+        issues += cls._missing_parts(RawValue((), data))
         several = bool(raw.below(cls, "bodies").value)
         if not several:
             issues += cls._mismatches(raw)
@@ -195,7 +200,7 @@ class Problem(SpecModel):
             return
         yield from missing_keys(cls, raw.value, OF_ONE_BODY)
         zones = raw.below(cls, "contact_zones")
-        if zones.value == {} and isinstance(raw.value, Mapping | Problem) and not _left_out(raw.value, "contact_zones"):
+        if zones.value == {}:
             yield Issue(path=zones.path, message=NO_CONTACT)
 
     @classmethod
@@ -293,7 +298,6 @@ class Problem(SpecModel):
     def parts(self) -> tuple[Part, ...]:
         """The elastic bodies."""
         if not self.bodies:
-            assert self.material is not None and self.boundary is not None, "a problem of one body has both"
             one = Part(
                 name="", material=self.material, boundary=self.boundary, conditions=self.conditions, loads=self.loads
             )
@@ -320,11 +324,15 @@ class Problem(SpecModel):
         """Boundary of one of several bodies."""
         stated = self.bodies[body]
         if stated.copy_of is None:
-            assert stated.boundary is not None, "an original has one"
             return stated.boundary
         if body not in self._placed:
             self._placed[body] = placed(self.boundary_of(stated.copy_of), stated)
         return self._placed[body]
+
+    def sides_of(self, contact: str) -> tuple[str, str]:
+        """Names of the two bodies of a contact."""
+        first, second = self.contacts[contact].between
+        return _body_in(first), _body_in(second)
 
     def part_of(self, edge: str) -> str:
         """Name of the body that has an edge; empty for the only body."""
@@ -662,8 +670,3 @@ class Problem(SpecModel):
 def _body_in(side: Sequence[str]) -> str:
     """Name of the body of one side of a contact."""
     return side[0].partition(SEPARATOR)[0]
-
-
-def _left_out(data: Any, key: str) -> bool:
-    """Whether a key is not stated."""
-    return isinstance(data, Mapping) and key not in data

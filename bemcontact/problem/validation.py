@@ -282,6 +282,11 @@ def _unknown_key(cls: type[BaseModel], key: str) -> str:
     return unknown_word("key", key, cls.model_fields)
 
 
+def left_out() -> Any:
+    """A key that may be left out because others stand in for it, with a value that is never null."""
+    return Field(default=None, validate_default=False, json_schema_extra=lambda schema: schema.pop("default", None))
+
+
 def missing_keys(cls: type[BaseModel], data: Any, keys: Sequence[str]) -> Iterator[Issue]:
     """Issues of keys without which a mapping means nothing, though others may stand in for them."""
     if isinstance(data, Mapping):

@@ -50,11 +50,11 @@ def test_a_channel_sees_what_is_before_it(turn, scale, mirrored):
         ((4.5, 0), (-1, 1)): {"under", "right"},  # the bed and the inner left side are hidden
     }
     for where, names in seen.items():
-        assert {*edges_that_see(boundary, plane(at, *where))} == names
+        assert {*edges_that_see(boundary.edges, plane(at, *where))} == names
     ball = Circle(center=at(2, 1.5), radius=0.3 * scale, body="outside")
-    assert {*edges_that_see(boundary, ball)} == {"bed", "inner left", "inner right"}
+    assert {*edges_that_see(boundary.edges, ball)} == {"bed", "inner left", "inner right"}
     pin = Circle(center=at(2, 0.5), radius=0.19 * scale, body="outside")
-    assert "pipe" in edges_that_see(boundary, pin)
+    assert "pipe" in edges_that_see(boundary.edges, pin)
 
 
 def problem(zones, conditions=None):
