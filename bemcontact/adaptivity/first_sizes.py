@@ -42,9 +42,16 @@ AT_CORNER = 0.1
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SizedOutline:
-    """All loops of a body, sampled, with the thickness of the body at each sample."""
+    """All loops of all bodies, sampled, with the thickness of the body at each sample.
+
+    Parameters
+    ----------
+    loops : of the bodies
+    bodies : number of the body of each loop
+    """
 
     loops: tuple[Loop, ...]
+    bodies: tuple[int, ...]
 
     @cached_property
     def _samples(self) -> list[tuple[int, Edge, Array]]:
@@ -72,6 +79,7 @@ class SizedOutline:
         """Distance [L] from each sample through the body to the boundary that faces it; infinite without one."""
         x, y = np.vstack([edge.points(at) for _, edge, at in self._samples]).T
         normals = np.vstack([edge.normals(at) for _, edge, at in self._samples])
+        body = np.repeat([self.bodies[number] for number, _, _ in self._samples], [len(at) for *_, at in self._samples])
         least = []
         for few in range(0, len(x), IN_CACHE):
             rows = slice(few, few + IN_CACHE)
@@ -79,6 +87,8 @@ class SizedOutline:
             inward = right * normals[rows, :1] + up * normals[rows, 1:]
             squared = right**2 + up**2
             faces = (inward > 0) & (inward**2 >= ACROSS**2 * squared) & (normals[rows] @ normals.T < OPPOSED)
+            if len({*self.bodies}) > 1:
+                faces &= body[rows, None] == body
             least.append(np.sqrt(np.where(faces, squared, np.inf).min(axis=1)))
         return tuple(np.split(np.concatenate(least), np.cumsum([len(own) for own in self.positions])[:-1]))
 
@@ -102,7 +112,8 @@ class SizedOutline:
 
 def outline(problem: Problem) -> SizedOutline:
     """The boundary of a problem, whatever its elements are."""
-    return SizedOutline(loops=tuple(Loop(edges=edges) for edges in problem.loops))
+    loops = [(Loop(edges=edges), number) for number, part in enumerate(problem.parts) for edges in part.loops]
+    return SizedOutline(loops=tuple(loop for loop, _ in loops), bodies=tuple(number for _, number in loops))
 
 
 def _curvature(edge: Edge, start: float) -> Iterator[Limit]:

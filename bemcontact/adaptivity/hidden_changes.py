@@ -66,7 +66,7 @@ def _partly_cut(coarse: Solved, elements: BoolArray) -> Problem:
     """The problem with some elements (m,) of a mesh in two."""
     problem, ends = coarse.body.problem, dict[str, list[float]]()
     for number, name in enumerate(coarse.mesh.edge_names):
-        places = problem.edge(name).breakpoints(problem.mesh.refine)
+        places = coarse.mesh.ends_on(name)
         middles = (places[:-1] + places[1:]) / 2
         ends[name] = np.sort(np.append(places[1:-1], middles[elements[coarse.mesh.edge == number]])).tolist()
     whole = problem.model_copy(update={"mesh": problem.mesh.model_copy(update={"refine": 1})})

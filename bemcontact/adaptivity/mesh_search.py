@@ -114,7 +114,7 @@ class MeshSearch(MeshSizes):
         """Loop of a run, and position of its start there."""
         for number, loop in enumerate(self.outline.loops):
             if run.edges[0].name in loop.start_of:
-                return number, loop.start_of[run.edges[0].name]
+                return number, loop.start_of[run.edges[0].name] + run.breakpoints[0][0] * run.edges[0].length
         raise AssertionError(run.edges[0].name)
 
     def _same(self, end: ContactEnd, other: ContactEnd, near: float) -> bool:

@@ -7,6 +7,7 @@ from typing import Self
 
 import numpy as np
 
+from bemcontact.adaptivity.facing_sizes import FacingStretch, facing_stretches
 from bemcontact.adaptivity.first_sizes import SizedOutline, outline, surface_sizes
 from bemcontact.adaptivity.sizes import GROWTH, Layers, Limit, Loop
 from bemcontact.errors import Issue, ProblemError
@@ -37,6 +38,7 @@ class MeshSizes:
     outline: SizedOutline
     sources: list[list[Limit]]
     marks: list[list[float]]
+    facing: list[FacingStretch] = field(default_factory=list)
     layers: list[tuple[ContactEnd, float]] = field(default_factory=list)
     spots: list[tuple[int, Limit]] = field(default_factory=list)
     growth: float = GROWTH
@@ -65,25 +67,49 @@ class MeshSizes:
                     own += [Limit(low=low, high=high, size=high - low) for low, high in pairwise(at.tolist())]
             limits.append(useful_limits(loop, own))
             marks.append(ends)
+        facing = facing_stretches(problem, shape.loops)
+        for item in facing:
+            for loop, places in ((item.loop, item.ends), (item.onto, item.opposite_ends)):
+                marks[loop] += places
         # A mesh that is found asks for the accuracy as before.
         kept = problem.model_copy(update={"accuracy": problem.asked_accuracy})
-        return cls(problem=kept, outline=shape, sources=limits, marks=marks)
+        return cls(problem=kept, outline=shape, sources=limits, marks=marks, facing=facing)
 
     def mesh(self, refine: int) -> Problem:
         """The problem with elements as the sources ask, cut into equal parts."""
-        ends: dict[str, tuple[float, ...]] = {}
-        for number, loop in enumerate(self.outline.loops):
-            own = [(end, count) for end, count in self.layers if end.loop == number]
-            layers = [Layers(position=e.position, width=e.width, count=n, after=e.after) for e, n in own]
-            narrow = [limit for at, limit in self.spots if at == number]
-            marks = [*self.marks[number], *(end.position for end, _ in own)]
-            sized = replace(loop, growth=self.growth)
-            ends |= sized.element_ends(np.array([*self.sources[number], *narrow]), layers, marks)
+        ends = self._ends()
         if (total := sum(len(own) + 1 for own in ends.values())) > MOST_ELEMENTS:
             needed = f"a mesh of this body needs {total} elements, more than {MOST_ELEMENTS}"
             message = f"{needed}: it is too slender, or has too small parts; check its coordinates, or state elements"
             raise ProblemError(Issue(path=("boundary",), message=message))
         return cut(self.problem.with_element_ends(ends), refine)
+
+    def _ends(self) -> dict[str, tuple[float, ...]]:
+        """Fractions of the length of each edge where elements end inside it.
+
+        Where two bodies face each other, the first has the sizes of both, and the second takes over its elements.
+        """
+        limits = [
+            [*own, *(limit for at, limit in self.spots if at == number)] for number, own in enumerate(self.sources)
+        ]
+        for item in reversed(self.facing):
+            limits[item.loop] += item.sizes_of_first(limits[item.onto])
+        ends: dict[str, tuple[float, ...]] = {}
+        for number in range(len(self.outline.loops)):
+            ends |= self._ends_on(number, limits[number])
+        for item in self.facing:
+            loop = self.outline.loops[item.loop]
+            limits[item.onto] += item.sizes_of_second(loop, ends[item.edge])
+            ends |= self._ends_on(item.onto, limits[item.onto])
+        return ends
+
+    def _ends_on(self, number: int, limits: Sequence[Limit]) -> dict[str, tuple[float, ...]]:
+        """The same on the edges of one loop."""
+        own = [(end, count) for end, count in self.layers if end.loop == number]
+        layers = [Layers(position=e.position, width=e.width, count=n, after=e.after) for e, n in own]
+        marks = [*self.marks[number], *(end.position for end, _ in own)]
+        sized = replace(self.outline.loops[number], growth=self.growth)
+        return sized.element_ends(np.array(limits), layers, marks)
 
 
 def first_mesh(problem: Problem) -> Problem:

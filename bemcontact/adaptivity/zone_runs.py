@@ -28,10 +28,10 @@ class ZoneRun:
     ----------
     number : number of the run at its contact points
     zone : name of its zone
-    edges : in the order of the boundary
+    edges : in the order of the boundary, of which the first and the last may belong to it in part
     closed : whether the last edge ends where the first begins
     arc : (m + 1,) arc length of the elements up to each element end, as contact points have it
-    breakpoints : of each edge, fractions of its length where its elements begin and end
+    breakpoints : of each edge, fractions of its length where its elements of the piece begin and end
     turn : (k + 1,) angle by which the boundary turns to the left, into the body, at each joint of the k edges [rad];
         zero at the ends of an open run
     beside : the edges before and after the piece; none if it is closed
@@ -54,7 +54,8 @@ class ZoneRun:
     @cached_property
     def joints(self) -> Array:
         """Positions (k + 1,) where edges begin and end."""
-        return np.concatenate([[0.0], np.cumsum([edge.length for edge in self.edges])])
+        lengths = [edge.length * (at[-1] - at[0]) for edge, at in zip(self.edges, self.breakpoints, strict=True)]
+        return np.concatenate([[0.0], np.cumsum(lengths)])
 
     @property
     def corner(self) -> BoolArray:
@@ -65,7 +66,7 @@ class ZoneRun:
     def ends(self) -> Array:
         """Positions (m + 1,) of the element ends."""
         parts = zip(self.joints, self.edges, self.breakpoints, strict=False)
-        return np.concatenate([[0.0], *(start + edge.length * fractions[1:] for start, edge, fractions in parts)])
+        return np.concatenate([[0.0], *(start + edge.length * (at[1:] - at[0]) for start, edge, at in parts)])
 
     def position(self, arc: float) -> float:
         """Position of a point of the elements from its arc length; it increases across the seam of a closed run."""
@@ -76,7 +77,8 @@ class ZoneRun:
         """Place (x, y) [L] of a position."""
         at = position % self.length if self.closed else position
         i = int(np.clip(np.searchsorted(self.joints, at) - 1, 0, len(self.edges) - 1))
-        x, y = self.edges[i].points(np.array([(at - self.joints[i]) / self.edges[i].length]))[0].tolist()
+        fraction = self.breakpoints[i][0] + (at - self.joints[i]) / self.edges[i].length
+        x, y = self.edges[i].points(np.clip([fraction], 0.0, 1.0))[0].tolist()
         return x, y
 
     def element_at(self, position: float) -> float:
@@ -88,11 +90,14 @@ class ZoneRun:
 
     def fractions(self, ends: Array) -> dict[str, tuple[float, ...]]:
         """Fractions of the length of each edge where elements end inside it, from the positions of all ends."""
-        stated, same = {}, SAME * self.length
-        for edge, start, end in zip(self.edges, self.joints[:-1], self.joints[1:], strict=True):
+        stated, same = dict[str, set[float]](), SAME * self.length
+        for i, (edge, start, end) in enumerate(zip(self.edges, self.joints[:-1], self.joints[1:], strict=True)):
+            first, last = self.breakpoints[i][[0, -1]].tolist()
             inside = ends[(ends > start + same) & (ends < end - same)]
-            stated[edge.name] = tuple(((inside - start) / (end - start)).tolist())
-        return stated
+            places = first + (inside - start) / (end - start) * (last - first)
+            own = stated.setdefault(edge.name, set())
+            own.update(places.tolist(), (at for at in (first, last) if 0 < at < 1))
+        return {name: tuple(sorted(own)) for name, own in stated.items()}
 
 
 def zone_runs(body: Body) -> Iterator[ZoneRun]:
@@ -102,10 +107,11 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
     for number, elements in enumerate(points.elements_of_run):
         if not len(elements):
             continue  # a corner of the body that stands on a face by itself
-        names = [mesh.edge_names[i] for i in dict.fromkeys(mesh.edge[elements].tolist())]
-        edges = tuple(problem.edge(name) for name in names)
+        breaks = (np.diff(mesh.edge[elements]) != 0) | (np.diff(elements) != 1)
+        pieces = np.split(elements, np.flatnonzero(breaks) + 1)
+        edges = tuple(problem.edge(mesh.edge_names[mesh.edge[piece[0]]]) for piece in pieces)
         closed = bool(np.isfinite(points.run_length[number]))
-        breakpoints = tuple(mesh.ends_on(name) for name in names)
+        breakpoints = tuple(np.append(mesh.fractions[piece, 0], mesh.fractions[piece[-1], 2]) for piece in pieces)
         outside = mesh.before[elements[0]], mesh.elements[elements[-1], 2]
         yield ZoneRun(
             number=number,
