@@ -56,6 +56,13 @@ class CaseAnswer:
         """Traction (m, 3, 2) [p]."""
         return self.state.traction
 
+    def presses(self, element: int) -> bool:
+        """Whether there is pressure on an element, or on the one of the other body that it faces."""
+        if self.pressure[:, element, 1].any():
+            return True
+        facing = self.condensation.body.points.facing.items()
+        return any((self.pressure[zone, of == element, 1] > 0).any() for zone, of in facing)
+
     @cached_property
     def displacement(self) -> Array:
         """Displacement (m, 3, 2) [L], less its part in the free motions that nothing determines.

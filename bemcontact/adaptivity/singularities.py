@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved
-from bemcontact.adaptivity.wedge_exponents import Face, contact_face, slow_change, wedge_exponents
+from bemcontact.adaptivity.wedge_exponents import Face, Opposite, contact_face, slow_change, wedge_exponents
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
 from bemcontact.bem.mesh import CORNER
@@ -161,8 +161,8 @@ def _nearest(measured: float, known: Sequence[float]) -> tuple[float, bool]:
 
 def exponents_at(solved: Solved, answer: CaseAnswer, run: ZoneRun, position: float) -> tuple[float, ...]:
     """Exponents of infinite pressures at a position of a run, by the angle of the body and what holds its faces."""
-    wedge, _ = _wedge_at(solved, answer, run, position)
-    return wedge_exponents(*wedge)
+    wedge, _, opposite = _wedges_at(solved, answer, run, position)
+    return wedge_exponents(*wedge, opposite)
 
 
 def _is_logarithmic(difference: MeshDifference, place: ContactPlace) -> bool:
@@ -184,12 +184,14 @@ def _rise(difference: MeshDifference, place: ContactPlace) -> float:
     at, peak = float(answer.pressure[zone, elements].max()), float(answer.pressure[zone].max())
     if not at > 0:
         return 0.0
-    wedge, loads = _wedge_at(fine, answer, run, place.position)
+    wedge, loads, opposite = _wedges_at(fine, answer, run, place.position)
     _, length = contact_beside(run, answer.stretches[run.number], place.position)
     size = max(float(fine.weights[elements].sum(axis=1).min()) / (length or run.length), SHARP)
     if all(face.contact for face in wedge[2]) and abs(wedge[1] - np.pi) < CORNER:
-        return max(0.0, (at + _slope(fine, place.kink, fine.body.part_of(int(elements[0]))) * np.log(size / SHARP)) / peak - 1)
-    change = slow_change(*wedge, loads)
+        softer = (1.0, opposite.stiffness) if opposite else (1.0,)
+        slope = _slope(fine, place.kink, fine.body.part_of(int(elements[0]))) * min(softer)
+        return max(0.0, (at + slope * np.log(size / SHARP)) / peak - 1)
+    change = slow_change(*wedge, loads, opposite)
     if change is None:
         return 0.0
     sharp = max(change.at(face, at, SHARP / size) for face in range(2) if wedge[2][face].contact)
@@ -205,13 +207,34 @@ def _slope(solved: Solved, kink: float, part: int) -> float:
     return 2 * material.shear_modulus / (1 - material.effective_poisson_ratio) * kink / (2 * np.pi)
 
 
-def _wedge_at(
+ElasticWedge = tuple[float, float, tuple[Face, Face], float]
+"""An elastic wedge as `wedge_exponents` has it."""
+
+
+def _wedges_at(
     solved: Solved, answer: CaseAnswer, run: ZoneRun, position: float
-) -> tuple[tuple[float, float, tuple[Face, Face], float], tuple[complex, complex]]:
-    """The elastic wedge at a position of a run, for `wedge_exponents`, and the tractions on its faces [p]."""
-    mesh, problem, elements = solved.mesh, solved.body.problem, run_elements(solved, run)
+) -> tuple[ElasticWedge, tuple[complex, ...], Opposite | None]:
+    """The elastic wedge at a position of a run, the tractions on its faces [p], and the one that it touches.
+
+    Tractions on the faces of the latter come last.
+    """
+    mesh, elements = solved.mesh, run_elements(solved, run)
     at = int(np.argmin(np.abs(run.ends - position))) % (len(elements) if run.closed else len(elements) + 1)
     after = int(elements[at] if at < len(elements) else np.argmax(mesh.before == elements[-1]))
+    wedge, loads = _wedge_at(solved, answer, after)
+    facing = solved.body.points.facing.get([*solved.body.problem.zones].index(run.zone))
+    if facing is None:
+        return wedge, loads, None
+    before = mesh.before[after]
+    across = facing[before] if facing[before] >= 0 else mesh.elements[facing[after], 2]
+    other, their_loads = _wedge_at(solved, answer, int(across))
+    moduli = [solved.body.shear_moduli[element] for element in (after, across)]
+    return wedge, (*loads, *their_loads), Opposite(*other, stiffness=float(moduli[1] / moduli[0]))
+
+
+def _wedge_at(solved: Solved, answer: CaseAnswer, after: int) -> tuple[ElasticWedge, tuple[complex, complex]]:
+    """The elastic wedge where an element starts, and the tractions on its faces [p]."""
+    mesh, problem = solved.mesh, solved.body.problem
     before = int(mesh.before[after])
     leaves, arrives = mesh.tangents[after, 0], mesh.tangents[before, 2]
     if mesh.edge[after] == mesh.edge[before]:
@@ -229,7 +252,7 @@ def _wedge_at(
 
 def _face(answer: CaseAnswer, element: int, direction: float) -> Face:
     """What holds the face of a wedge with an element, from the direction of the boundary there."""
-    if answer.pressure[:, element, 1].any():
+    if answer.presses(element):
         return contact_face(np.exp(1j * (direction - np.pi / 2)))
     x, y = answer.condensation.body.acting.values.traction_unknown[element].tolist()
     return Face(1.0, (x, y))

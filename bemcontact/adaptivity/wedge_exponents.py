@@ -5,6 +5,9 @@ Near a corner the displacement is of the form r^λ f(θ), and stresses are infin
 are singular (Williams 1952). Frictionless contact with a straight rigid face, u_n = 0 = τ, mirrors the wedge: with a
 free face, sin 2λω + λ sin 2ω = 0, which is λ = 1/2 on a half-plane, ω = π.
 
+Contact of two elastic wedges joins their equations: on both faces shear is zero, and normal tractions and displacements
+are the same (Dundurs and Lee 1972).
+
 Constant tractions on the faces make λ = 1. Where that is singular too, as in contact beside a free face at a right
 angle, the pressure changes like ln r; near to it, hardly less slowly.
 """
@@ -57,8 +60,27 @@ def contact_face(normal: complex) -> Face:
 FREE = Face(1.0, (False, False))
 
 
+class Opposite(NamedTuple):
+    """The elastic wedge on the other side of contact.
+
+    Parameters
+    ----------
+    start, angle, faces, poisson_ratio : as of `wedge_exponents`; its first face touches the second one of the other
+        wedge, or its second the first
+    stiffness : shear modulus over that of the other wedge
+    """
+
+    start: float
+    angle: float
+    faces: tuple[Face, Face]
+    poisson_ratio: float
+    stiffness: float
+
+
 @lru_cache(maxsize=256)
-def wedge_exponents(start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float) -> tuple[float, ...]:
+def wedge_exponents(
+    start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, opposite: Opposite | None = None
+) -> tuple[float, ...]:
     """Exponents α = 1 - λ of pressures that are infinite like r^-α, the largest first.
 
     Parameters
@@ -66,10 +88,11 @@ def wedge_exponents(start: float, angle: float, faces: tuple[Face, Face], poisso
     start, angle : direction of the first face from the tip, and the angle inside the body from there [rad]
     faces : the first and the second one
     poisson_ratio : of plane strain
+    opposite : the elastic wedge that faces in contact touch; a rigid surface if None
     """
     if not any(face.contact for face in faces):
         return ()
-    wedge = (start, angle, faces, poisson_ratio)
+    wedge = (start, angle, faces, poisson_ratio, opposite)
     return tuple(1 - power for power in _roots(wedge, GRID) if _presses(wedge, power))
 
 
@@ -83,7 +106,7 @@ def stress_is_infinite(start: float, angle: float, faces: tuple[Face, Face], poi
     clamped, free = ((held, held) in [face.held for face in faces] for held in (True, False))
     if clamped and free:
         return bool(angle > np.pi / 2 + MARGINAL or np.sin(angle) ** 2 > 1 - poisson_ratio + MARGINAL)
-    return bool(_roots((start, angle, faces, poisson_ratio), GRID))
+    return bool(_roots((start, angle, faces, poisson_ratio, None), GRID))
 
 
 def _roots(wedge: "Wedge", grid: Array) -> list[float]:
@@ -119,35 +142,32 @@ class SlowChange(NamedTuple):
 
 @lru_cache(maxsize=256)
 def slow_change(
-    start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, loads: tuple[complex, complex]
-) -> SlowChange | None:
+    start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, loads: tuple[complex, ...],
+    opposite: Opposite | None = None,
+) -> SlowChange | None:  # fmt: skip
     """How slowly the pressure changes at the tip of a wedge; None if no λ is near to one.
 
     Parameters
     ----------
-    start, angle, faces, poisson_ratio : see `wedge_exponents`
-    loads : traction [p] on each face, of which counts what the face does not hold: on one in contact the shear
+    start, angle, faces, poisson_ratio, opposite : see `wedge_exponents`
+    loads : traction [p] on each face, of which counts what the face does not hold: on one in contact the shear; then
+        those on the faces of the opposite wedge
     """
-    wedge = (start, angle, faces, poisson_ratio)
+    wedge = (start, angle, faces, poisson_ratio, opposite)
     roots = [power for power in _roots(wedge, NEAR_ONE) if _presses(wedge, power)]
     if not roots:
         return None
     power = min(roots, key=lambda root: abs(root - 1))
     left, sizes, right = np.linalg.svd(_conditions(wedge, power))
     null = sizes <= 10 * ROOT * sizes[0]
-    outward = -1.0, 1.0  # the field has tractions on rays, towards larger angles
-    given = np.array([
-        0.0 if held else sign * (load * np.conj(direction)).real
-        for face, load, sign in zip(faces, loads, outward, strict=True)
-        for direction, held in zip((face.direction, 1j * face.direction), face.held, strict=True)
-    ])  # fmt: skip
+    given = _given(wedge, loads)
 
     def pressures(state: Array) -> tuple[float, float]:
         one, other = (
-            -sign * float((_field(at, 1.0, poisson_ratio)[1] * np.conj(face.direction)).real @ state)
+            -sign * float((_field(at, 1.0, poisson_ratio)[1] * np.conj(face.direction)).real @ state[:4])
             if face.contact
             else 0.0
-            for face, at, sign in zip(faces, (start, start + angle), outward, strict=True)
+            for face, at, sign in zip(faces, (start, start + angle), OUTWARD, strict=True)
         )
         return one, other
 
@@ -158,7 +178,9 @@ def slow_change(
     return SlowChange(pressures(constant), pressures(amount @ right), float(power - 1))
 
 
-Wedge = tuple[float, float, tuple[Face, Face], float]
+OUTWARD = -1.0, 1.0
+"""Signs of the tractions out of a wedge on its faces: the field has those on rays, towards larger angles."""
+Wedge = tuple[float, float, tuple[Face, Face], float, Opposite | None]
 
 
 def _least(wedge: Wedge, low: float, high: float) -> float:
@@ -182,9 +204,9 @@ def _singular(wedge: Wedge, powers: Array) -> Array:
 
 def _presses(wedge: Wedge, power: float) -> bool:
     """Whether a state r^λ has pressure on a face in contact."""
-    start, angle, faces, poisson_ratio = wedge
+    start, angle, faces, poisson_ratio, _ = wedge
     _, sizes, states = np.linalg.svd(_conditions(wedge, power))
-    states = states[sizes <= 10 * ROOT * sizes[0]]
+    states = states[sizes <= 10 * ROOT * sizes[0], :4]
     for face, at in zip(faces, (start, start + angle), strict=True):
         if face.contact:
             _, traction = _field(at, power, poisson_ratio)
@@ -194,14 +216,74 @@ def _presses(wedge: Wedge, power: float) -> bool:
 
 
 def _conditions(wedge: Wedge, power: float | Array) -> Array:
-    """Matrix (..., 4, 4) of the conditions on both faces, on (Re A, Im A, Re B, Im B), for each power (...)."""
-    start, angle, faces, poisson_ratio = wedge
-    rows = list[Array]()
-    for face, at in zip(faces, (start, start + angle), strict=True):
-        displacement, traction = _field(at, power, poisson_ratio)
-        for direction, held in zip((face.direction, 1j * face.direction), face.held, strict=True):
-            rows.append(((displacement if held else traction) * np.conj(direction)).real)
-    return np.stack(rows, axis=-2)
+    """Matrix of the conditions on both faces, on (Re A, Im A, Re B, Im B), for each power (...): (..., 4, 4).
+
+    It is (..., 8, 8) on those of two wedges that touch.
+    """
+    *own, other = wedge
+    own_faces = _face_rows(*own, power)
+    if other is None:
+        return np.stack([row for face in own_faces for row in face.held], axis=-2)
+    other_faces, rows = _face_rows(*other[:4], power), list[tuple[Array | None, Array | None]]()
+    for face, its in zip(own[2], own_faces, strict=True):
+        rows += [(its.traction[1], None)] if face.contact else [(row, None) for row in its.held]
+    for face, its, touched, theirs in zip(other.faces, other_faces, own[2][::-1], own_faces[::-1], strict=True):
+        if not (face.contact and touched.contact):
+            rows += [(None, row) for row in its.held]
+            continue
+        turn = touched.direction * np.conj(face.direction)  # the normals are the same or opposite up to round-off
+        sign = 1.0 if turn.real > 0 else -1.0
+        rows.append((None, its.traction[1]))
+        rows.append((theirs.traction[0], -sign * its.traction[0]))
+        rows.append((theirs.displacement[0], -sign / other.stiffness * its.displacement[0]))
+    return np.stack([_joined(*row) for row in rows], axis=-2)
+
+
+def _given(wedge: Wedge, loads: tuple[complex, ...]) -> Array:
+    """Right sides of the conditions for tractions on the faces, in their order."""
+    *own, other = wedge
+    faces = own[2] if other is None else (*own[2], *other.faces)
+    given = list[float]()
+    for number, (face, load) in enumerate(zip(faces, loads, strict=True)):
+        directions = zip((face.direction, 1j * face.direction), face.held, strict=True)
+        values = [0.0 if held else OUTWARD[number % 2] * (load * np.conj(at)).real for at, held in directions]
+        if other is None or not face.contact:
+            given += values
+        else:
+            given += values[1:] if number < 2 else [values[1], 0.0, 0.0]
+    return np.array(given)
+
+
+class _FaceRows(NamedTuple):
+    """Rows (..., 4) of displacement and traction along the direction of a face, and across it; those that are held."""
+
+    displacement: tuple[Array, Array]
+    traction: tuple[Array, Array]
+    held: tuple[Array, Array]
+
+
+def _face_rows(
+    start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, power: float | Array
+) -> tuple[_FaceRows, _FaceRows]:
+    """The rows of both faces of a wedge."""
+
+    def of(face: Face, at: float) -> _FaceRows:
+        displacement, traction = (
+            tuple((values * np.conj(direction)).real for direction in (face.direction, 1j * face.direction))
+            for values in _field(at, power, poisson_ratio)
+        )
+        first, second = (u if held else t for u, t, held in zip(displacement, traction, face.held, strict=True))
+        return _FaceRows((displacement[0], displacement[1]), (traction[0], traction[1]), (first, second))
+
+    return of(faces[0], start), of(faces[1], start + angle)
+
+
+def _joined(own: Array | None, other: Array | None) -> Array:
+    """A row (..., 8) of two wedges, of which one may have no part in it."""
+    known = own if own is not None else other
+    assert known is not None, "one of the wedges has a part"
+    none = np.zeros_like(known)
+    return np.concatenate([none if own is None else own, none if other is None else other], axis=-1)
 
 
 def _field(theta: float, power: float | Array, poisson_ratio: float) -> tuple[Array, Array]:

@@ -281,12 +281,17 @@ class SurfaceGaps:
         motion = self._displacement[elements]
         before, normals = self.undeformed(zone, at.points)
         after = self.exact(zone, at.points + motion).gap
+        if isinstance(self.surfaces[zone], BodySurface):  # linear: beside an end of contact places slide along it
+            after = before + np.sum(normals * (motion - self.tool_motion(zone, at.points)), axis=-1)
         turned = np.sum(at.inward * normals, axis=-1) > TURNED
         snug = self._fits(zone, elements, before, turned)[:, None]
         behind, mesh = np.zeros(len(self.state.points), bool), self.outline.mesh
         behind[elements] = np.any((before < -flush) & ~snug, axis=1)
         crosses: BoolArray = (behind | behind[mesh.before] | behind[mesh.elements[:, 2]])[elements, None]
         outside = (before > flush) | snug | (~crosses & (before >= -flush))
+        surface = self.surfaces[zone]
+        if isinstance(surface, BodySurface) and surface.elastic:  # opposite to a corner, its own node is compared
+            outside &= ~surface.feet(at.points.reshape(-1, 2)).corner.reshape(outside.shape)
         depth, local = np.where(outside, -after, -np.inf), self.outline.local[elements].copy()
         for crossing in self._crossings(zone, elements, np.where(snug, np.inf, before), crosses, flush):
             if crossing.turned:

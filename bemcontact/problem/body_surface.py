@@ -14,6 +14,8 @@ from bemcontact.problem.surface_lines import Closest, Faces
 
 AT_END = 1e-9
 """Sine of the angle between the way to the end of an edge and the normal there from which the end itself is nearest."""
+ON_CORNER = 1e-9
+"""Distance from a corner over the extent of the points up to which a point is on it."""
 CORNER = 1e-6
 """Sine of the angle between two edges from which their joint is a corner."""
 
@@ -104,30 +106,33 @@ class BodySurface:
     def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
         """Find the faces that hold points (k, 2) [L], as of `Polyline`.
 
-        A corner of the other body, with normals (k, 2, 2) into it on either side, may stand in a concave corner of this
-        one, up to the distance `reach` (k,) [L]. Each side has the edge to which it is turned then.
+        A point on a corner of this body has the edge to which each side of it, with normals (k, 2, 2) into its own
+        body, is turned. So has a corner of the other body that stands in a concave one, up to the distance `reach`
+        (k,) [L].
         """
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in self.closest(points))
         turns = abs(cross(inward[:, 0], inward[:, 1])) > CORNER
-        for joint, own in self._grooves:
-            at = np.flatnonzero(turns & (np.hypot(*(points - joint).T) <= reach))
+        near = ON_CORNER * max(np.ptp(part) for part in points.T)
+        for joint, own in self._joints:
+            far = reach if cross(own[0], own[1]) < 0 else 0.0
+            at = np.flatnonzero(np.hypot(*(points - joint).T) <= np.where(turns, np.maximum(far, near), near))
             turned = np.einsum("kai,si->kas", inward[at], own)
-            for column, side in ((0, 0), (2, 1)):
+            for column, side in ((0, 0), (1, 0), (2, 1)):
                 chosen = own[turned[:, side].argmax(axis=1)]
                 normals[at, column] = chosen
                 gap[at, column] = np.sum((points[at] - joint) * chosen, axis=1) + self.offset
         return Faces(gap, normals, normals.copy())
 
     @cached_property
-    def _grooves(self) -> list[tuple[Array, Array]]:
-        """Concave corners between two edges of the surface: point (2,) and both normals (2, 2) out of the body."""
-        names, grooves = {edge.name for edge in self.edges}, []
+    def _joints(self) -> list[tuple[Array, Array]]:
+        """Corners between two edges of the surface: point (2,) and both normals (2, 2) out of the body."""
+        names, joints = {edge.name for edge in self.edges}, []
         for edge, _, after in _neighbors(self.loops):
             if edge.name in names and after.name in names:
                 own = np.stack([edge.normals(np.ones(1))[0], after.normals(np.zeros(1))[0]])
-                if cross(own[0], own[1]) < -CORNER:
-                    grooves.append((np.array(edge.end), own))
-        return grooves
+                if abs(cross(own[0], own[1])) > CORNER:
+                    joints.append((np.array(edge.end), own))
+        return joints
 
 
 def _neighbors(loops: Sequence[Sequence[Edge]]) -> Iterable[tuple[Edge, Edge, Edge]]:

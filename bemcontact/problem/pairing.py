@@ -14,6 +14,8 @@ SAMPLES = 512
 """Samples of an edge between which it has at most one end of an opposite part."""
 HALVINGS = 60
 """Halvings of the part of an edge in which such an end is."""
+INSIDE = 1e-9
+"""Distance from an end of the edge, over its length, where the end is looked at."""
 SHORTEST = 1e-9
 """Least length of an opposite part over that of its edge: shorter ones are round-off of coordinates."""
 SAME = 1e-12
@@ -54,7 +56,7 @@ def _parts_of(edge: Edge, surface: BodySurface) -> list[OppositePart]:
         return np.where(turned & ~feet.corner, feet.edge, -1)
 
     at = np.linspace(0.0, 1.0, SAMPLES + 1)
-    onto = opposite(at)
+    onto = opposite(np.clip(at, INSIDE, 1 - INSIDE))  # on a corner of the surface two edges are nearest
     changes = np.flatnonzero(np.diff(onto))
     starts, ends = [(0.0, int(onto[0]))], []
     for i in changes.tolist():
