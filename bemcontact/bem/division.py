@@ -13,7 +13,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.curves import Edge
-from bemcontact.problem.pairing import OppositePart
+from bemcontact.problem.pairing import HALF, OppositePart
 from bemcontact.problem.problem import Problem
 
 NEAR = 0.3
@@ -97,8 +97,13 @@ def in_order(edges: Mapping[str, Edge], matched: Sequence[Matched]) -> list[str]
 
 
 def feet(item: Matched, edge: Edge, at: Array) -> Array:
-    """Fractions (k,) of the opposite edge at the closest points of places (k,) of an edge."""
-    return item.surface.edges[item.part.onto].curve.nearest(edge.points(at))
+    """Fractions (k,) of the opposite edge at the closest points of ascending places (k,) of an edge: they descend."""
+    there = item.surface.edges[item.part.onto].curve.nearest(edge.points(at))
+    if there[0] + HALF < there[1]:  # the end of a full circle is its start
+        there[0] = 1.0
+    if there[-1] > there[-2] + HALF:
+        there[-1] = 0.0
+    return there
 
 
 def _thirds(ends: Array) -> Array:

@@ -14,6 +14,8 @@ SAMPLES = 512
 """Samples of an edge between which it has at most one end of an opposite part."""
 HALVINGS = 60
 """Halvings of the part of an edge in which such an end is."""
+HALF = 0.5
+"""Difference of fractions of an edge between two samples from which its end is between them."""
 INSIDE = 1e-9
 """Distance from an end of the edge, over its length, where the end is looked at."""
 SHORTEST = 1e-9
@@ -50,19 +52,19 @@ def opposite_parts(edges: Sequence[Edge], surface: BodySurface) -> list[Opposite
 def _parts_of(edge: Edge, surface: BodySurface) -> list[OppositePart]:
     """Opposite parts of one edge."""
 
-    def opposite(at: Array) -> IntArray:
+    def opposite(at: Array) -> tuple[IntArray, Array]:
         feet = surface.feet(edge.points(at))
         turned = turned_to(-edge.normals(at), feet.normals)
-        return np.where(turned & ~feet.corner, feet.edge, -1)
+        return np.where(turned & ~feet.corner, feet.edge, -1), feet.fraction
 
     at = np.linspace(0.0, 1.0, SAMPLES + 1)
-    onto = opposite(np.clip(at, INSIDE, 1 - INSIDE))  # on a corner of the surface two edges are nearest
-    changes = np.flatnonzero(np.diff(onto))
+    onto, there = opposite(np.clip(at, INSIDE, 1 - INSIDE))  # on a corner of the surface two edges are nearest
+    changes = np.flatnonzero((np.diff(onto) != 0) | (abs(np.diff(there)) > HALF))
     starts, ends = [(0.0, int(onto[0]))], []
     for i in changes.tolist():
         low, high = float(at[i]), float(at[i + 1])
-        ends.append(_last(opposite, low, high, int(onto[i])))
-        starts.append((_last(opposite, high, low, int(onto[i + 1])), int(onto[i + 1])))
+        ends.append(_last(opposite, low, high, int(onto[i]), float(there[i])))
+        starts.append((_last(opposite, high, low, int(onto[i + 1]), float(there[i + 1])), int(onto[i + 1])))
     ends.append(1.0)
     return [
         OppositePart(edge.name, low, high, number)
@@ -71,11 +73,17 @@ def _parts_of(edge: Edge, surface: BodySurface) -> list[OppositePart]:
     ]
 
 
-def _last(opposite: Callable[[Array], IntArray], start: float, stop: float, number: int) -> float:
-    """Last place from a start towards a stop that is opposite to the edge of a number."""
+def _last(
+    opposite: Callable[[Array], tuple[IntArray, Array]], start: float, stop: float, number: int, there: float
+) -> float:
+    """Last place from a start towards a stop that is opposite to the edge of a number, on the side of a fraction.
+
+    A full circle is one edge, whose end is its start.
+    """
     for _ in range(HALVINGS):
         middle = (start + stop) / 2
-        if opposite(np.array([middle]))[0] == number:
+        onto, fraction = opposite(np.array([middle]))
+        if onto[0] == number and abs(fraction[0] - there) <= HALF:
             start = middle
         else:
             stop = middle
