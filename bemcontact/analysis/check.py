@@ -77,7 +77,7 @@ def _smallest_gap(body: Body, zone: int) -> float:
         return least
     own = np.unique(points.element[points.zone_of_share == zone])
     for edge in map(problem.edge, problem.edges_of(name)):
-        ends, first = edge.breakpoints(problem.mesh.refine), np.argmax(mesh.edge == mesh.edge_names.index(edge.name))
+        ends, first = mesh.ends_on(edge.name), np.argmax(mesh.edge == mesh.edge_names.index(edge.name))
         corners = (corner.fraction for corner in surface_corners(edge, surface))
         nearest = [*nearest_places(edge.curve, surface), *corners]
         if inside := [at for at in nearest if first + np.searchsorted(ends, at) - 1 in own]:

@@ -1,5 +1,9 @@
 """The problem as the user gives it: body, conditions, loads, contact zones, tools; frozen and checked."""
 
+from bemcontact.problem.bodies import BodyContact as BodyContact
+from bemcontact.problem.bodies import BodySpec as BodySpec
+from bemcontact.problem.bodies import Part as Part
+from bemcontact.problem.body_surface import BodySurface as BodySurface
 from bemcontact.problem.boundary import Boundary as Boundary
 from bemcontact.problem.conditions import AxisFields as AxisFields
 from bemcontact.problem.conditions import Centrifugal as Centrifugal

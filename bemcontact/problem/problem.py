@@ -302,10 +302,11 @@ class Problem(SpecModel):
                 name="", material=self.material, boundary=self.boundary, conditions=self.conditions, loads=self.loads
             )
             return (one,)
-        return tuple(self._part(name, body) for name, body in self.bodies.items() if self._is_elastic(body))
+        return tuple(self._part(name, body) for name, body in self.bodies.items() if self.is_elastic(name))
 
-    def _is_elastic(self, body: BodySpec) -> bool:
-        return not (self.bodies[body.copy_of] if body.copy_of is not None else body).rigid
+    def is_elastic(self, body: str) -> bool:
+        """Whether one of several bodies is elastic."""
+        return not self.bodies[self.bodies[body].copy_of or body].rigid
 
     def _part(self, name: str, body: BodySpec) -> Part:
         """An elastic body."""
@@ -390,10 +391,10 @@ class Problem(SpecModel):
     def _zone_of(self, contact: BodyContact) -> BodyZone:
         """A contact between two bodies as a zone on the surface of the second one."""
         first, second = contact.between
-        if not self._is_elastic(self.bodies[_body_in(first)]):
+        if not self.is_elastic(_body_in(first)):
             first, second = second, first
         body = _body_in(second)
-        elastic, loops = self._is_elastic(self.bodies[body]), named_loops(self.boundary_of(body), body)
+        elastic, loops = self.is_elastic(body), named_loops(self.boundary_of(body), body)
         held = {name for name in self._held_edges() if elastic} if second == (body,) else set[str]()
         touched = tuple(
             edge

@@ -7,6 +7,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.problem import (
+    BodySurface,
     Circle,
     Condition,
     DeflectedContour,
@@ -14,6 +15,7 @@ from bemcontact.problem import (
     Field,
     LoadCase,
     Loads,
+    Part,
     Plane,
     Polyline,
     Problem,
@@ -67,7 +69,9 @@ def _range(values: Array) -> str:
 
 def prescribed(problem: Problem, edge: Edge) -> Iterator[str]:
     """Conditions of an edge: ``u_x = 0``, ``t_y = -3.6 kN/cm²``, ``pressure 3 N/mm²``, ``may touch in foot``."""
-    yield from (f"may touch in {name}" for name in problem.zones if edge.name in problem.edges_of(name))
+    for name in problem.zones:
+        if edge.name in (*problem.edges_of(name), *opposite_edges(problem, name)):
+            yield f"may touch in {name}"
     if edge.name in problem.edge_conditions:
         yield from _conditions(problem.edge_conditions[edge.name], edge, problem.units)
     for case, factor in problem.factors().items():
@@ -90,10 +94,28 @@ def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]
 
 def volume_loads(problem: Problem) -> Iterator[str]:
     """Loads on the volume: ``gravity (0, -9.81)``, ``rotation 100 about (0, 0) (1.5 spinning)``."""
-    yield from _volume_loads(problem.loads, problem)
-    for case, factor in problem.factors().items():
-        loads = _volume_loads(problem.load_cases[case].loads, problem)
-        yield from (f"{load} ({_acting(case, factor)})" for load in loads)
+    names = ["", *problem.load_cases]
+    for name, each in zip(names, problem.volume_loads, strict=True):
+        factor = problem.factors().get(name, 0.0) if name else 1.0
+        for part, loads in zip(problem.parts, each, strict=True):
+            of = f" on {part.name}" if part.name else ""
+            case = f" ({_acting(name, factor)})" if name else ""
+            yield from (f"{load}{of}{case}" for load in _volume_loads(loads, part) if factor)
+
+
+def acting_volume_loads(problem: Problem) -> Iterator[tuple[float, Loads]]:
+    """The loads on the volume of each body with their factors: those of the problem and of the load cases that act."""
+    factors = [1.0, *(problem.factors().get(case, 0.0) for case in problem.load_cases)]
+    for factor, each in zip(factors, problem.volume_loads, strict=True):
+        yield from ((factor, loads) for loads in each if factor)
+
+
+def opposite_edges(problem: Problem, zone: str) -> tuple[str, ...]:
+    """Names of the edges of the second body of a contact of two elastic bodies that the first one may touch."""
+    surface = problem.zones[zone].surface
+    if not isinstance(surface, BodySurface) or not surface.elastic:
+        return ()
+    return tuple(dict.fromkeys(surface.edges[part.onto].name for part in problem.opposite(zone)))
 
 
 def _acting(case: str, factor: float) -> str:
@@ -101,14 +123,14 @@ def _acting(case: str, factor: float) -> str:
     return case if factor == 1 else f"{factor:g} {case}"
 
 
-def _volume_loads(loads: Loads, problem: Problem) -> Iterator[str]:
-    """Loads on the volume of the body."""
+def _volume_loads(loads: Loads, part: Part) -> Iterator[str]:
+    """Loads on the volume of a body."""
     if loads.gravity:
         yield f"gravity {vector(loads.gravity.acceleration)}"
     if loads.centrifugal:
         yield f"rotation {number(loads.centrifugal.angular_velocity)} about {vector(loads.centrifugal.center)}"
     if loads.temperature:
-        points = np.concatenate([edge.polyline() for edge in problem.edges])
+        points = np.concatenate([edge.polyline() for edge in part.edges])
         yield f"temperature change {_range(loads.temperature.change.at(points))}"
 
 
@@ -131,13 +153,16 @@ def tool_in_words(action: ToolAction, units: Units) -> str:
 
 def case_in_words(case: LoadCase) -> str:
     """Description of a load case, or else the names of what it changes."""
-    changed = [*case.conditions, *case.tools, *(key for key, load in case.loads if load is not None)]
+    changed = [*case.conditions, *case.tools, *case.bodies, *(key for key, load in case.loads if load is not None)]
     return case.description.strip() or f"changes {', '.join(changed)}"
 
 
-def surface_in_words(surface: RigidSurface) -> str:
-    """Description of a rigid surface."""
+def surface_in_words(surface: RigidSurface | BodySurface) -> str:
+    """Description of the surface that is touched."""
     match surface:
+        case BodySurface():
+            added = f", gap {number(surface.offset)} added" if surface.offset else ""
+            return f"{'' if surface.elastic else 'rigid '}body '{surface.body}'{added}"
         case Plane():
             return f"plane through {vector(surface.point)}, normal {vector(surface.unit_normal)}"
         case Circle():
@@ -150,7 +175,7 @@ def surface_in_words(surface: RigidSurface) -> str:
 
 
 def zone_surfaces(problem: Problem) -> list[tuple[str, str, str]]:
-    """Name, edges and rigid surface of each contact zone."""
+    """Name, edges and surface of each contact zone."""
     zones = problem.zones.items()
     return [(name, ", ".join(problem.edges_of(name)), surface_in_words(zone.surface)) for name, zone in zones]
 
@@ -161,7 +186,7 @@ def deflected_by(surface: DeflectedContour, problem: Problem) -> str:
         f"{name} {', '.join(_conditions(condition, problem.edge(name), problem.units))}"
         for name, condition in surface.conditions.items()
     ]
-    return "; ".join([*conditions, *_volume_loads(surface.loads, problem)])
+    return "; ".join([*conditions, *_volume_loads(surface.loads, problem.parts[0])])
 
 
 def paragraphs(text: str) -> list[str]:

@@ -5,6 +5,7 @@ from rich.table import Table
 from rich.text import Text
 
 from bemcontact.analysis.check import CheckedProblem
+from bemcontact.bem.mesh import Mesh
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.formatting import (
     case_in_words,
@@ -25,14 +26,12 @@ from bemcontact.report.tables import add, list_of_facts, table_of
 def problem_summary(checked: CheckedProblem) -> RenderableType:
     """List edges, zones, mesh, loads, supports and notes of a problem."""
     problem, mesh = checked.problem, checked.mesh
-    material, units = problem.material, problem.units
-    modulus = with_unit(number(material.young_modulus), units.stress)
-    shown = list_of_facts()
-    add(
-        shown,
-        "Material",
-        f"E = {modulus}, Poisson's ratio {number(material.poisson_ratio)}, {material.state.replace('_', ' ')}",
-    )
+    units, shown = problem.units, list_of_facts()
+    for part in problem.parts:
+        material, of = part.material, f"{part.name}: " if part.name else ""
+        modulus = with_unit(number(material.young_modulus), units.stress)
+        ratio, state = number(material.poisson_ratio), material.state.replace("_", " ")
+        add(shown, "Material", f"{of}E = {modulus}, Poisson's ratio {ratio}, {state}")
     points = sum(map(len, checked.gaps.values()))
     add(shown, "Mesh", f"{len(mesh.elements)} elements, {len(mesh.nodes)} nodes, {points} contact points")
     add(shown, "Degrees of freedom", f"{mesh.degrees_of_freedom}")
@@ -65,19 +64,23 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
         add(shown, "Variant", f"{name}: {variant.description.strip() or changes}")
     for note in checked.notes:
         add(shown, "Note", note)
-    return Group(Text(problem.title, "bold"), "", _edge_table(problem), "", _zone_table(checked), "", shown)
+    return Group(Text(problem.title, "bold"), "", _edge_table(problem, mesh), "", _zone_table(checked), "", shown)
 
 
-def _edge_table(problem: Problem) -> Table:
+def _edge_table(problem: Problem, mesh: Mesh) -> Table:
     """List the edges, loop by loop."""
     table = table_of("edge", "kind", "length", "elements", "condition")
-    boundary = problem.boundary
-    for number_of_loop, (stated, loop) in enumerate(zip(boundary.loop_specs, boundary.loops, strict=True)):
+    loops = [
+        (part.name, number_of_loop, *loop)
+        for part in problem.parts
+        for number_of_loop, loop in enumerate(zip(part.boundary.loop_specs, part.loops, strict=True))
+    ]
+    for body, number_of_loop, stated, loop in loops:
         if number_of_loop:
-            table.add_row(Text(f"hole {number_of_loop}", "italic"))
+            table.add_row(Text(f"hole {number_of_loop}{f' of {body}' * bool(body)}", "italic"))
         for shape, edge in zip(stated, loop, strict=True):
             length = with_unit(number(edge.length), problem.units.length)
-            elements = f"{len(edge.breakpoints(problem.mesh.refine)) - 1}"
+            elements = f"{len(mesh.ends_on(edge.name)) - 1}"
             condition = ", ".join(prescribed(problem, edge)) or "free"
             table.add_row(*map(Text, (edge.name, shape.kind, length, elements, condition)))
     return table
@@ -85,7 +88,8 @@ def _edge_table(problem: Problem) -> Table:
 
 def _zone_table(checked: CheckedProblem) -> Table:
     """List the contact zones."""
-    table = table_of("contact zone", "edges", "points", "smallest gap", "rigid surface")
+    what = "surface" if checked.problem.several else "rigid surface"
+    table = table_of("contact zone", "edges", "points", "smallest gap", what)
     for name, zone in checked.problem.zones.items():
         gap = checked.gaps[name]
         least = zero_if_negligible(checked.smallest_gaps[name], checked.problem.size)

@@ -330,5 +330,9 @@ def outline_of(state: BoundaryState, curves: Array) -> Path:
 
 def loops_of(state: BoundaryState, curves: Array) -> list[Array]:
     """Split curves (m, c, 2) where one loop of elements ends and the next begins."""
-    breaks = (state.points[1:, 0] != state.points[:-1, 2]).any(axis=1)
-    return np.split(curves, np.flatnonzero(breaks) + 1)
+    first, breaks = 0, list[int]()
+    for element, (start, *_, end) in enumerate(state.points):
+        if (end == state.points[first, 0]).all():  # the next loop may begin at the same place, on another body
+            first = element + 1
+            breaks.append(first)
+    return np.split(curves, breaks[:-1])

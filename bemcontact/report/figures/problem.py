@@ -16,6 +16,7 @@ from bemcontact.arrays import Array
 from bemcontact.bem.mesh import Mesh, applied_traction, element_curves
 from bemcontact.problem import (
     AxisFields,
+    BodySurface,
     Circle,
     Condition,
     DeflectedContour,
@@ -40,7 +41,14 @@ from bemcontact.report.figures.page import (
     wrapped,
 )
 from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
-from bemcontact.report.formatting import NEGLIGIBLE, prescribed, tool_in_words, volume_loads
+from bemcontact.report.formatting import (
+    NEGLIGIBLE,
+    acting_volume_loads,
+    opposite_edges,
+    prescribed,
+    tool_in_words,
+    volume_loads,
+)
 
 Displacement = Callable[[Array], Array]
 """Points (k, 2) of the undeformed boundary -> how far (k, 2) they are displaced."""
@@ -91,7 +99,7 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
 
 def role(problem: Problem, edge: str) -> str:
     """Role of an edge: one of `ROLES`."""
-    if any(edge in problem.edges_of(zone) for zone in problem.zones):
+    if any(edge in (*problem.edges_of(zone), *opposite_edges(problem, zone)) for zone in problem.zones):
         return "may touch"
     conditions = [condition for _, condition in _acting(problem, edge)]
     if not conditions:
@@ -110,10 +118,9 @@ def _acting(problem: Problem, edge: str) -> Iterator[tuple[float, Condition]]:
 
 def _weight(problem: Problem) -> Array:
     """The weight (2,) of a unit of volume, with the load cases that act."""
-    cases = ((factor, problem.load_cases[case].loads) for case, factor in problem.factors().items())
     pulls = [
         factor * loads.gravity.density * np.array(loads.gravity.acceleration)
-        for factor, loads in ((1.0, problem.loads), *cases)
+        for factor, loads in acting_volume_loads(problem)
         if loads.gravity
     ]
     return _total(pulls, np.zeros(2))
@@ -197,7 +204,7 @@ def draw_loads(axes: Axes, problem: Problem, displacement: Displacement = np.zer
 
 def _draw_rotation(axes: Axes, problem: Problem) -> Iterator[Name]:
     """Draw the center of a rotation, and give its symbol a name to be placed there."""
-    spin = problem.loads.centrifugal
+    spin = next((loads.centrifugal for loads in problem.volume_loads[0] if loads.centrifugal), None)
     if spin is None or spin.angular_velocity == 0:
         return
     axes.autoscale(False)
@@ -212,7 +219,7 @@ def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
     """Draw the rigid surfaces opposite the body with their normals."""
     size = problem.size
     for name, zone in problem.zones.items():
-        if isinstance(zone.surface, DeflectedContour):
+        if isinstance(zone.surface, DeflectedContour) or (isinstance(zone.surface, BodySurface) and zone.surface.elastic):
             continue
         points, normals = surface_line(problem, name, 0.12 * size)
         yield draw_ground(axes, points, normals, 0.03 * size, GREY)
@@ -255,6 +262,10 @@ def surface_line(problem: Problem, zone: str, overhang: float) -> tuple[Array, A
     surface, facing, size = problem.zones[zone].surface, _facing(problem, zone), problem.size
     assert not isinstance(surface, DeflectedContour)
     match surface:
+        case BodySurface():
+            lines = [edge.points(np.linspace(0, 1, 91)) for loop in surface.loops for edge in loop]
+            outward = [edge.normals(np.linspace(0, 1, 91)) for loop in surface.loops for edge in loop]
+            return np.concatenate(lines), np.concatenate(outward)
         case Plane():
             normal = np.array(surface.unit_normal)
             along = np.array([normal[1], -normal[0]])
@@ -324,7 +335,8 @@ def _draw_legend(axes: Axes, problem: Problem) -> None:
     """Explain the colors in the picture, and list the loads on the volume."""
     occurring = {role(problem, edge.name) for edge in problem.edges}
     handles = [Line2D([], [], color=c, linewidth=2.5, label=name) for name, c in ROLES.items() if name in occurring]
-    handles.append(Line2D([], [], color=GREY, linewidth=1.3, label="rigid surface, normal"))
+    if problem.contact_zones or any(not part for part in map(problem.is_elastic, problem.bodies)):
+        handles.append(Line2D([], [], color=GREY, linewidth=1.3, label="rigid surface, normal"))
     handles += [Line2D([], [], linestyle="none", label=load) for load in volume_loads(problem)]
     axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
 

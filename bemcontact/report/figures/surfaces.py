@@ -7,7 +7,7 @@ import numpy as np
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.problem import DeflectedContour, Problem
+from bemcontact.problem import BodySurface, DeflectedContour, Problem
 from bemcontact.report.figures.page import pieces_of
 from bemcontact.report.figures.problem import surface_line
 
@@ -30,6 +30,8 @@ def surfaces_of(
     moves = dict(zip(tools.names, tools.displacement(result.solution.rigid_amplitudes), strict=True))
     points = dict(zip(tools.names, tools.point, strict=True))
     for number, (name, zone) in enumerate(problem.zones.items()):
+        if isinstance(zone.surface, BodySurface) and zone.surface.elastic:
+            continue  # the other body is drawn itself
         nearest = _nearest_points(result, number)
         if isinstance(zone.surface, DeflectedContour) or (factor > 1 and _turn(result.contact.normals[nearest]) > TURN):
             yield from ground_of(result, number, near, factor)
@@ -43,11 +45,14 @@ def surfaces_of(
 
 def reach_through(result: Result, factor: float) -> float:
     """How far [L] the magnified body reaches through the surfaces of `surfaces_of` that are moved as a whole."""
-    contact, furthest = result.contact, 0.0
+    contact, furthest, problem = result.contact, 0.0, result.problem
+    facing = set() if problem is None else {*problem.contacts}
     gap = contact.gap(result.solution.pressure, result.solution.rigid_amplitudes)
     for number in range(len(contact.zone_names)):
         own, nearest = np.flatnonzero(contact.zone == number), _nearest_points(result, number)
-        if _turn(contact.normals[nearest]) <= TURN:
+        if contact.zone_names[number] in facing:  # two bodies, neither of which is moved as a whole
+            furthest = max(furthest, (factor - 1) * float(contact.initial_gap[nearest].max()))
+        elif _turn(contact.normals[nearest]) <= TURN:
             moved = contact.initial_gap[own] - contact.normals[own] @ _shift(contact, nearest, 1.0)
             furthest = max(furthest, float((-factor * gap[own] + (factor - 1) * moved).max()))
     return furthest
