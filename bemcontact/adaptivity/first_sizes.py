@@ -11,10 +11,11 @@ import numpy as np
 from bemcontact.adaptivity.sizes import Limit, Loop
 from bemcontact.arrays import Array
 from bemcontact.bem.mesh import CORNER
+from bemcontact.problem.body_surface import AnyShape
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.nearest_places import gaps, nearest_places, surface_corners
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import DeflectedContour, Shape
+from bemcontact.problem.rigid_surface import DeflectedContour
 
 TURN = pi / 6
 """Angle [rad] by which an element may turn."""
@@ -162,7 +163,7 @@ def surface_sizes(problem: Problem, outline: SizedOutline) -> tuple[dict[int, li
     return limits, marks
 
 
-def _near(edge: Edge, start: float, surface: Shape) -> Iterator[Limit]:
+def _near(edge: Edge, start: float, surface: AnyShape) -> Iterator[Limit]:
     """Limits at each local least of the initial gap: half of the radius of the relative curvature."""
     middle, step = np.array(nearest_places(edge.curve, surface)), FLAT
     three = gaps(edge.curve, surface, middle[:, None] + step * np.array([-1.0, 0.0, 1.0]))

@@ -220,14 +220,14 @@ def _conditions(wedge: Wedge, power: float | Array) -> Array:
 
     It is (..., 8, 8) on those of two wedges that touch.
     """
-    *own, other = wedge
-    own_faces = _face_rows(*own, power)
+    start, angle, faces, poisson_ratio, other = wedge
+    own_faces = _face_rows(start, angle, faces, poisson_ratio, power)
     if other is None:
         return np.stack([row for face in own_faces for row in face.held], axis=-2)
     other_faces, rows = _face_rows(*other[:4], power), list[tuple[Array | None, Array | None]]()
-    for face, its in zip(own[2], own_faces, strict=True):
+    for face, its in zip(faces, own_faces, strict=True):
         rows += [(its.traction[1], None)] if face.contact else [(row, None) for row in its.held]
-    for face, its, touched, theirs in zip(other.faces, other_faces, own[2][::-1], own_faces[::-1], strict=True):
+    for face, its, touched, theirs in zip(other.faces, other_faces, faces[::-1], own_faces[::-1], strict=True):
         if not (face.contact and touched.contact):
             rows += [(None, row) for row in its.held]
             continue
@@ -241,8 +241,8 @@ def _conditions(wedge: Wedge, power: float | Array) -> Array:
 
 def _given(wedge: Wedge, loads: tuple[complex, ...]) -> Array:
     """Right sides of the conditions for tractions on the faces, in their order."""
-    *own, other = wedge
-    faces = own[2] if other is None else (*own[2], *other.faces)
+    _, _, own, _, other = wedge
+    faces = own if other is None else (*own, *other.faces)
     given = list[float]()
     for number, (face, load) in enumerate(zip(faces, loads, strict=True)):
         directions = zip((face.direction, 1j * face.direction), face.held, strict=True)

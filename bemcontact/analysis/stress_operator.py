@@ -5,7 +5,6 @@ from numpy.typing import ArrayLike
 
 from bemcontact.adaptivity.adapt import meshed
 from bemcontact.analysis.body_stress import ensure_in_body, infinite_starts, kinds
-from bemcontact.analysis.displaced_body import acting_volume_loads
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.solve import ensure_kind
 from bemcontact.arrays import BoolArray, IntArray, real_array
@@ -51,7 +50,7 @@ def operator_of(condensation: Condensation, points: ArrayLike) -> StressOperator
     """The operator of a body that has been condensed."""
     body, contact = condensation.body, condensation.contact
     displacement, traction = boundary_columns(condensation)
-    loads = acting_volume_loads(body)
+    loads = [of_parts[0] for of_parts in body.problem.volume_loads]
     factors = np.zeros((displacement.shape[2], len(loads)))
     np.fill_diagonal(factors, 1.0)
     field = StressField.of(body.outline, displacement, traction, loads, factors)

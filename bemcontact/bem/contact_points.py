@@ -12,8 +12,8 @@ from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import BoundaryValues, Mesh, MeshPart
 from bemcontact.bem.outline import Outline
 from bemcontact.errors import Issue, ProblemError
-from bemcontact.problem.body_surface import BodySurface
-from bemcontact.problem.rigid_surface import DeflectedContour, RigidSurface
+from bemcontact.problem.body_surface import AnySurface, BodySurface
+from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.surface_lines import Faces
 from bemcontact.problem.visibility import turned_to
 
@@ -309,7 +309,7 @@ class _NodeFaces(NamedTuple):
         return nodes
 
 
-def _faces(outline: Outline, surface: RigidSurface | BodySurface, deflection: Array | None) -> _NodeFaces:
+def _faces(outline: Outline, surface: AnySurface, deflection: Array | None) -> _NodeFaces:
     """Faces of a surface at all nodes, or of the deflected contour."""
     if isinstance(surface, DeflectedContour):
         assert deflection is not None

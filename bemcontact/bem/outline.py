@@ -10,11 +10,11 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
-from bemcontact.problem.body_surface import BodySurface
+from bemcontact.problem.body_surface import AnySurface, BodySurface
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.nearest_places import nearest_places, surface_corners
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import Circle, Plane, RigidSurface
+from bemcontact.problem.rigid_surface import Circle, Plane
 from bemcontact.problem.surface_lines import Polyline, Spline
 
 SAMPLES = np.linspace(-1.0, 1.0, 17)
@@ -140,7 +140,7 @@ class Outline:
         return np.concatenate([ends, middles]), np.concatenate([near, np.zeros(len(near))])
 
 
-def _narrow_places(edge: Edge, surface: RigidSurface | BodySurface, *, paired: bool) -> Iterable[float]:
+def _narrow_places(edge: Edge, surface: AnySurface, *, paired: bool) -> Iterable[float]:
     """Fractions of an edge where a surface may be narrow: where it is nearest, or has a corner.
 
     A spline, for which this takes long, is looked at from the edges alone that are `paired` with it.

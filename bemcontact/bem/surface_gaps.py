@@ -20,9 +20,9 @@ from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import NODES, Outline
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
-from bemcontact.problem.body_surface import BodySurface
+from bemcontact.problem.body_surface import AnyShape, BodySurface
 from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import DeflectedContour, Shape
+from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.surface_lines import Closest, Faces, Polyline, Spline
 
 CHUNK = 8192
@@ -137,7 +137,7 @@ class SurfaceGaps:
     tools: Mapping[str, Array]
 
     @property
-    def surfaces(self) -> dict[str, Shape | BodySurface]:
+    def surfaces(self) -> dict[str, AnyShape]:
         """Surfaces by zone; a deflected contour has no gap at other places than the nodes of its own zone."""
         zones = self.problem.zones.items()
         return {name: zone.surface for name, zone in zones if not isinstance(zone.surface, DeflectedContour)}

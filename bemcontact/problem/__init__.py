@@ -3,6 +3,7 @@
 from bemcontact.problem.bodies import BodyContact as BodyContact
 from bemcontact.problem.bodies import BodySpec as BodySpec
 from bemcontact.problem.bodies import Part as Part
+from bemcontact.problem.body_surface import AnySurface as AnySurface
 from bemcontact.problem.body_surface import BodySurface as BodySurface
 from bemcontact.problem.boundary import Boundary as Boundary
 from bemcontact.problem.conditions import AxisFields as AxisFields

@@ -5,7 +5,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import AfterValidator, BeforeValidator, Field, ValidatorFunctionWrapHandler, WrapValidator, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    model_validator,
+)
 
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import Condition, Loads
@@ -32,7 +39,9 @@ def _stated_material(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
 def _without_separator(value: str) -> str:
     """Refuse a name of a body that could not be told from that of its edge."""
     if SEPARATOR in value:
-        raise invalid(f"the name of a body must not contain {SEPARATOR}, which stands before its edges; found {value!r}")
+        raise invalid(
+            f"the name of a body must not contain {SEPARATOR}, which stands before its edges; found {value!r}"
+        )
     return value
 
 
@@ -197,5 +206,3 @@ def with_boundary(body: BodySpec, boundary: Boundary, material: Material | str |
     """A body with another division of its boundary; a copy becomes a body of its own."""
     kept = {"copy_of": None, "shift": (0.0, 0.0), "rotate": 0.0, "about": (0.0, 0.0), "material": material}
     return body.model_copy(update={**kept, "boundary": boundary})
-
-

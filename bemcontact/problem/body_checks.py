@@ -63,7 +63,9 @@ def _copy_issues(problem: Problem, name: str, body: BodySpec) -> Iterator[Issue]
                 what = f"'{body.copy_of}' has {key}, and a copy does not take them over"
                 yield Issue(path=path, message=f"{what}; state those of '{name}', or make it a body of its own")
         if original.rigid and (body.conditions or body.loads != Loads()):
-            yield Issue(path=path, message=f"'{body.copy_of}' is rigid, so that its copy has no conditions and no loads")
+            yield Issue(
+                path=path, message=f"'{body.copy_of}' is rigid, so that its copy has no conditions and no loads"
+            )
 
 
 def contact_issues(problem: Problem) -> Iterator[Issue]:
@@ -77,7 +79,9 @@ def contact_issues(problem: Problem) -> Iterator[Issue]:
         if name in problem.contact_zones:
             yield KeyIssue(path=path, message=f"a contact zone has the name '{name}' already; give another name")
         sides = [
-            issue for number in (0, 1) for issue in _side_issues(problem, contact.between[number], (*path, "between"), number)
+            issue
+            for number in (0, 1)
+            for issue in _side_issues(problem, contact.between[number], (*path, "between"), number)
         ]
         yield from sides
         if not sides:
@@ -100,7 +104,9 @@ def _side_issues(problem: Problem, side: Sequence[str], path: KeyPath, number: i
     """Issues of one side of a contact."""
     bodies = {name.partition(SEPARATOR)[0] for name in side}
     if len(bodies) > 1:
-        yield Issue(path=(*path, number), message=f"the edges of one side are of one body, found {', '.join(sorted(bodies))}")
+        yield Issue(
+            path=(*path, number), message=f"the edges of one side are of one body, found {', '.join(sorted(bodies))}"
+        )
         return
     for i, entry in enumerate(side):
         here = (*path, number) if len(side) == 1 else (*path, number, i)
@@ -112,7 +118,9 @@ def _side_issues(problem: Problem, side: Sequence[str], path: KeyPath, number: i
         if separator and edge not in own:
             yield Issue(path=here, message=unknown_word("edge", entry, [qualified(body, name) for name in own]))
         elif not separator and len(side) > 1:
-            yield Issue(path=here, message=f"'{entry}' is a whole body; leave the edges of this side out, or name its edges")
+            yield Issue(
+                path=here, message=f"'{entry}' is a whole body; leave the edges of this side out, or name its edges"
+            )
         elif separator and edge in problem.bodies[body].conditions:
             message = f"edge '{entry}' has a condition and cannot touch; remove one of the two"
             yield Issue(path=here, message=message)
@@ -155,7 +163,9 @@ def _tool_issues(problem: Problem) -> Iterator[Issue]:
                 for body in (side[0].partition(SEPARATOR)[0] for side in problem.contacts[zone].between)
                 if body in problem.bodies
             ):
-                message = f"'{zone}' is a contact of two elastic bodies, and a tool is rigid; move a body by a condition"
+                message = (
+                    f"'{zone}' is a contact of two elastic bodies, and a tool is rigid; move a body by a condition"
+                )
                 yield Issue(path=("tools", name, "zones"), message=message)
 
 
@@ -171,7 +181,9 @@ def opposite_issues(problem: Problem) -> Iterator[Issue]:
             parts = problem.opposite(name)
             if not parts:
                 sides = " and ".join(", ".join(side) for side in contact.between)
-                yield Issue(path=path, message=f"{sides} are nowhere opposite to each other; look at their places and normals")
+                yield Issue(
+                    path=path, message=f"{sides} are nowhere opposite to each other; look at their places and normals"
+                )
             for part in parts:
                 follows.setdefault(surface.edges[part.onto].name, set()).add(part.edge)  # pyright: ignore[reportAttributeAccessIssue]
     if circle := _circle(follows):

@@ -10,6 +10,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problem.curves import Curve, Edge, cross
+from bemcontact.problem.rigid_surface import RigidSurface, Shape
 from bemcontact.problem.surface_lines import Closest, Faces
 
 AT_END = 1e-9
@@ -133,6 +134,12 @@ class BodySurface:
                 if abs(cross(own[0], own[1])) > CORNER:
                     joints.append((np.array(edge.end), own))
         return joints
+
+
+AnyShape = Shape | BodySurface
+"""A surface that has a gap at any point of the plane."""
+AnySurface = RigidSurface | BodySurface
+"""What a body may touch."""
 
 
 def _neighbors(loops: Sequence[Sequence[Edge]]) -> Iterable[tuple[Edge, Edge, Edge]]:

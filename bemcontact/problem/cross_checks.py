@@ -223,7 +223,9 @@ def _too_few_elements(edge: Edge, refine: int) -> str:
     return f"{start}; give it more elements, and grade them towards the bend"
 
 
-def facing_issues(boundary: Sequence[Edge], zones: Mapping[KeyPath, ContactZone], prescribed: Collection[str]) -> list[Issue]:
+def facing_issues(
+    boundary: Sequence[Edge], zones: Mapping[KeyPath, ContactZone], prescribed: Collection[str]
+) -> list[Issue]:
     """Issues of rigid surfaces that are too far away or too wide, or whose normal points out of the body there.
 
     The direction of a deflected contour must not point out of the body at any point of the zone. `prescribed` names
@@ -252,7 +254,9 @@ def facing_issues(boundary: Sequence[Edge], zones: Mapping[KeyPath, ContactZone]
     return issues or [*_unseen(boundary, zones, prescribed)]
 
 
-def _unseen(boundary: Sequence[Edge], zones: Mapping[KeyPath, ContactZone], prescribed: Collection[str]) -> Iterator[Issue]:
+def _unseen(
+    boundary: Sequence[Edge], zones: Mapping[KeyPath, ContactZone], prescribed: Collection[str]
+) -> Iterator[Issue]:
     """Issues of surfaces that no edge can touch, and of edges of several zones that turn their backs to one of them."""
     touching = {path: zone_edges(boundary, zone, prescribed) for path, zone in zones.items()}
     count = Counter(name for names in touching.values() for name in names)

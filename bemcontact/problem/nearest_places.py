@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.problem.body_surface import AnyShape, AnySurface
 from bemcontact.problem.curves import Curve, Edge
-from bemcontact.problem.rigid_surface import RigidSurface, Shape
 from bemcontact.problem.surface_lines import Polyline
 from bemcontact.problem.validation import Point
 
@@ -21,7 +21,7 @@ AT_END = 1e-6
 """Distance over the length of an edge up to which a place is an end of it."""
 
 
-def nearest_places(curve: Curve, surface: Shape) -> tuple[float, ...]:
+def nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
     """Fractions of the length inside an edge where the initial gap is locally least, to `ACCURACY`.
 
     A smooth surface remembers them: each mesh of a search asks again.
@@ -33,7 +33,7 @@ def nearest_places(curve: Curve, surface: Shape) -> tuple[float, ...]:
     return surface.nearest[curve]
 
 
-def _nearest_places(curve: Curve, surface: Shape) -> tuple[float, ...]:
+def _nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
     """Find the places among samples, and then among finer ones beside each."""
     at = np.linspace(0, 1, SAMPLES + 1)
     gap, step = gaps(curve, surface, at), float(at[1])
@@ -46,7 +46,7 @@ def _nearest_places(curve: Curve, surface: Shape) -> tuple[float, ...]:
     return tuple(middle[np.minimum(middle, 1 - middle) > ACCURACY].tolist())
 
 
-def gaps(curve: Curve, surface: Shape, fractions: Array) -> Array:
+def gaps(curve: Curve, surface: AnyShape, fractions: Array) -> Array:
     """Initial gap [L] at fractions of the length of an edge, of any shape; beyond its ends that of the ends."""
     return surface.closest(curve.at(np.clip(fractions, 0, 1).ravel())).gap.reshape(fractions.shape)
 
@@ -64,7 +64,7 @@ class SurfaceCorner(NamedTuple):
     turn: float
 
 
-def surface_corners(edge: Edge, surface: RigidSurface, *, at_ends: bool = False) -> Iterator[SurfaceCorner]:
+def surface_corners(edge: Edge, surface: AnySurface, *, at_ends: bool = False) -> Iterator[SurfaceCorner]:
     """Where an edge is nearest to a corner of a polyline, if that is inside or, if wanted, right at an end."""
     if not isinstance(surface, Polyline):
         return

@@ -20,7 +20,6 @@ from bemcontact.arrays import real_array
 from bemcontact.checks.arguments import load_factors, shown, text_of_argument, whole_number
 from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.options import EXPECTED_ACCURACY
-from bemcontact.problem.body_checks import body_issues, contact_issues, opposite_issues
 from bemcontact.problem.bodies import (
     SEPARATOR,
     BodyContact,
@@ -31,6 +30,7 @@ from bemcontact.problem.bodies import (
     placed,
     with_boundary,
 )
+from bemcontact.problem.body_checks import body_issues, contact_issues, opposite_issues
 from bemcontact.problem.body_surface import BodySurface, BodyZone
 from bemcontact.problem.boundary import Boundary, size_of
 from bemcontact.problem.conditions import Condition, Loads
@@ -244,7 +244,9 @@ class Problem(SpecModel):
         zones = RawValue(("contact_zones",), {**self.contact_zones, **self.contacts})
         issues += [*contact_issues(self), *self._action_issues(raw, zones, conditions)]
         issues += reference_issues(raw.below(type(self), "reference"), zones, self._raw_case_names(raw))
-        stated = {("contact_zones", name): zone for name, zone in self.contact_zones.items()}
+        stated: dict[KeyPath, ContactZone] = {
+            ("contact_zones", name): zone for name, zone in self.contact_zones.items()
+        }
         if not issues:
             issues += facing_issues(self.edges, stated, self._held_edges())
         if not issues:
@@ -602,7 +604,11 @@ class Problem(SpecModel):
         if unknown := [name for name in numbers if name not in known]:
             raise ProblemError(Issue(path=("boundary",), message=unknown_word("edge", unknown[0], known)))
         for part in self.parts:
-            own = {edge.name: numbers[full] for edge in part.boundary.edges if (full := part.edge_name(edge.name)) in numbers}
+            own = {
+                edge.name: numbers[full]
+                for edge in part.boundary.edges
+                if (full := part.edge_name(edge.name)) in numbers
+            }
             changed[part.name] = part.boundary.with_element_ends(own)
             issues += mesh_issues(changed[part.name], self._boundary_path(part.name), self.mesh.refine)
         if issues:

@@ -284,7 +284,11 @@ def _unknown_key(cls: type[BaseModel], key: str) -> str:
 
 def left_out() -> Any:
     """A key that may be left out because others stand in for it, with a value that is never null."""
-    return Field(default=None, validate_default=False, json_schema_extra=lambda schema: schema.pop("default", None))
+
+    def without_default(schema: dict[str, Any]) -> None:
+        del schema["default"]
+
+    return Field(default=None, validate_default=False, json_schema_extra=without_default)
 
 
 def missing_keys(cls: type[BaseModel], data: Any, keys: Sequence[str]) -> Iterator[Issue]:

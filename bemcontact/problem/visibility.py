@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.problem.body_surface import BodySurface
+from bemcontact.problem.body_surface import AnyShape, BodyZone
 from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import Edge, cross
-from bemcontact.problem.rigid_surface import DeflectedContour, Shape
+from bemcontact.problem.rigid_surface import DeflectedContour
 
 TURNED = 0.05
 """Cosine between the inward normal of a place and the normal of a surface above which the place is turned to it: a side
@@ -25,14 +25,14 @@ def turned_to(inward: Array, normals: Array) -> BoolArray:
     return np.sum(inward * normals, axis=-1) > TURNED
 
 
-def zone_edges(boundary: Sequence[Edge], zone: ContactZone, prescribed: Collection[str]) -> tuple[str, ...]:
+def zone_edges(boundary: Sequence[Edge], zone: ContactZone | BodyZone, prescribed: Collection[str]) -> tuple[str, ...]:
     """Names of the edges of a zone; if it names none, those that can see its surface and have no condition."""
-    if zone.edges is not None or isinstance(zone.surface, DeflectedContour):
+    if zone.edges is not None or isinstance(zone, BodyZone) or isinstance(zone.surface, DeflectedContour):
         return zone.edges or ()
     return tuple(name for name in edges_that_see(boundary, zone.surface) if name not in prescribed)
 
 
-def edges_that_see(boundary: Sequence[Edge], surface: Shape | BodySurface) -> tuple[str, ...]:
+def edges_that_see(boundary: Sequence[Edge], surface: AnyShape) -> tuple[str, ...]:
     """Names of the edges that can touch a surface: from one of their places it is seen past the rest of the body.
 
     A place sees the surface if it is turned to it and the boundary does not cross the line to the nearest point of the

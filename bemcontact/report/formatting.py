@@ -7,6 +7,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.problem import (
+    AnySurface,
     BodySurface,
     Circle,
     Condition,
@@ -20,7 +21,6 @@ from bemcontact.problem import (
     Polyline,
     Problem,
     Reference,
-    RigidSurface,
     Spline,
     Table,
     ToolAction,
@@ -157,7 +157,7 @@ def case_in_words(case: LoadCase) -> str:
     return case.description.strip() or f"changes {', '.join(changed)}"
 
 
-def surface_in_words(surface: RigidSurface | BodySurface) -> str:
+def surface_in_words(surface: AnySurface) -> str:
     """Description of the surface that is touched."""
     match surface:
         case BodySurface():

@@ -152,7 +152,7 @@ def test_under_a_blunt_corner_the_pressure_grows_like_the_logarithm():
     """By E*/2π times the angle and ln 2 each time that the elements are cut in two (Johnson 1985, section 5.2)."""
     turn = 5e-4
     first, second, third = (on_a_ridge(turn, count) for count in (30, 60, 120))
-    each = _slope(solved(on_polyline([(0, 0), (20, 0), (40, 0)], None, 4)), turn) * np.log(2)
+    each = _slope(solved(on_polyline([(0, 0), (20, 0), (40, 0)], None, 4)), turn, 0) * np.log(2)
     assert second - first == pytest.approx(each, rel=0.03)
     assert third - second == pytest.approx(each, rel=0.01)
 

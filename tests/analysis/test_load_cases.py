@@ -139,8 +139,8 @@ def test_results_of_all_cases():
 def test_a_case_costs_one_right_side():
     """Columns of the solution: what is permanent, each case, and a unit pressure at each contact point."""
     with_cases, without = condense(body_of(made(HELD, **HELD_CASES))), condense(body_of(made(HELD)))
-    assert with_cases.response.columns == 1 + 5 + with_cases.contact.size
-    assert with_cases.response.columns == without.response.columns + 5
+    assert with_cases.parts[0].response.columns == 1 + 5 + with_cases.contact.size
+    assert with_cases.parts[0].response.columns == without.parts[0].response.columns + 5
 
 
 def test_boundary_under_a_case_agrees_with_the_condensed_equation():

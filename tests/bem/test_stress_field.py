@@ -34,9 +34,7 @@ def field_of(body: Problem) -> StressField:
     mesh = build(body)
     loading = permanent_loading(body, mesh)
     motions = free_rigid_motions(mesh, loading.values.displacement_given)
-    system = System(
-        mesh=mesh, material=body.material, points=UnitPressures.none(), motions=motions, loadings=[loading]
-    )
+    system = System(mesh=mesh, material=body.material, points=UnitPressures.none(), motions=motions, loadings=[loading])
     u, t = system.fields(solve_system(system).combined(np.ones(1)), loading)
     return StressField.of(Outline(problem=body, mesh=mesh), u[..., None], t[..., None], [body.loads], np.ones((1, 1)))
 

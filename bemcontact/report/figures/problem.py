@@ -219,7 +219,9 @@ def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
     """Draw the rigid surfaces opposite the body with their normals."""
     size = problem.size
     for name, zone in problem.zones.items():
-        if isinstance(zone.surface, DeflectedContour) or (isinstance(zone.surface, BodySurface) and zone.surface.elastic):
+        if isinstance(zone.surface, DeflectedContour) or (
+            isinstance(zone.surface, BodySurface) and zone.surface.elastic
+        ):
             continue
         points, normals = surface_line(problem, name, 0.12 * size)
         yield draw_ground(axes, points, normals, 0.03 * size, GREY)
