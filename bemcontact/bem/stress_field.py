@@ -14,6 +14,7 @@ from bemcontact.bem.interior import Interior
 from bemcontact.bem.loading import VolumeField, particular_field
 from bemcontact.bem.mesh import CORNER, Mesh
 from bemcontact.bem.outline import ROUGH, Outline
+from bemcontact.bem.symmetry import SymmetryLine, symmetry_lines
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.nearest_places import surface_corners
 from bemcontact.problem.problem import Problem
@@ -122,7 +123,13 @@ class StressField:
     @cached_property
     def interior(self) -> Interior:
         """The integrals over the boundary."""
-        return Interior(mesh=self.mesh, poisson_ratio=self.problem.material.effective_poisson_ratio)
+        nu = self.problem.material.effective_poisson_ratio
+        return Interior(mesh=self.mesh, poisson_ratio=nu, lines=self.lines)
+
+    @cached_property
+    def lines(self) -> list[SymmetryLine]:
+        """The lines of symmetry."""
+        return symmetry_lines(self.problem, self.mesh)
 
     def stress(self, at: Located) -> Array:
         """σxx, σyy, σxy (3, k, q) [p]; where an element ends, the mean of both sides; not a number outside."""
@@ -138,8 +145,19 @@ class StressField:
         return result
 
     def stress_on(self, element: IntArray, xi: Array, points: Array) -> Array:
-        """σxx, σyy, σxy (3, k, q) [p] on the boundary at ξ (k,) of elements (k,), where points (k, 2) [L] are."""
-        return self.fields.gradient(element, xi).stress(self.problem.material) + self._volume_stress(points)
+        """σxx, σyy, σxy (3, k, q) [p] on the boundary at ξ (k,) of elements (k,), where points (k, 2) [L] are.
+
+        On a line of symmetry it is that of the inside, but for corners.
+        """
+        gradient = self.fields.gradient(element, xi)
+        for line in self.interior.used_lines:
+            corner = ((xi <= -1) & ~self.smooth[element]) | ((xi >= 1) & ~self.smooth[self.mesh.elements[element, 2]])
+            own = np.flatnonzero(line.elements[element] & ~corner)
+            beside = points[own].copy()
+            beside[:, line.axis] = line.place - line.outward * ON_BOUNDARY * self.mesh.size
+            for part, inside in zip(gradient, self.interior.gradient(self.interior.z(beside), self.fields), strict=True):
+                part[own] = inside
+        return gradient.stress(self.problem.material) + self._volume_stress(points)
 
     def _volume_stress(self, points: Array) -> Array:
         """σxx, σyy, σxy (3, k, q) [p] of the particular solutions."""
