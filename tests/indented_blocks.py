@@ -30,14 +30,14 @@ def block(
 
 
 @cache
-def indented(width: float) -> tuple[Result, float, float]:
+def indented(width: float, accuracy: float = 1e-3) -> tuple[Result, float, float]:
     """A circle of radius 1 on a block 1000 times as large as the contact: the result, half-width and peak of Hertz."""
     load, size = np.pi * width**2 * MODULUS / 4, 1000 * width
     circle = {"kind": "circle", "center": [0, 1], "radius": 1, "body": "outside"}
     result = bemcontact.solve(
         block(
             size, [{"name": "top", "start": [size, 0]}], {"foot": {"edges": "top", "surface": circle}},
-            {"bottom": {"pressure": load / 2 / size}},
+            {"bottom": {"pressure": load / 2 / size}}, accuracy,
         )
     )  # fmt: skip
     (x, _), *_ = [interval.start for interval in result.footprint.intervals]

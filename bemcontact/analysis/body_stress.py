@@ -11,7 +11,7 @@ from bemcontact.adaptivity.wedge_exponents import FREE, Face, contact_face, stre
 from bemcontact.analysis.edge_peak import largest_along
 from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.bem import reference_element
-from bemcontact.bem.mesh import CORNER, BoundaryState, build
+from bemcontact.bem.mesh import CORNER, Mesh
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.stress_field import NEARLY, Located, StressField
 from bemcontact.contact.stress import EdgeStress, PointKind, Stress
@@ -30,36 +30,42 @@ class BodyStress:
 
     Parameters
     ----------
+    name : of the body; empty for an only one
     field : of one state
     traction : (m, 3, 2) [p]
     singular : (m,) whether stress is infinite where an element starts
     """
 
+    name: str
     field: StressField
     traction: Array
     singular: BoolArray
 
     @classmethod
-    def of(cls, problem: Problem, boundary: BoundaryState, pressed: BoolArray, infinite: Sequence[Pair]) -> Self:
-        """Read the boundary of a problem on its mesh.
+    def of(
+        cls, problem: Problem, number: int, mesh: Mesh, displacement: Array, traction: Array, pressed: BoolArray,
+        infinite: Sequence[Pair] | Array,
+    ) -> Self:  # fmt: skip
+        """Read the boundary of the elastic body of a number, with its mesh.
 
-        `pressed` (m,) are the elements that touch; at the places `infinite`, pressure is known to be so.
+        From displacement (m, 3, 2) [L] and traction (m, 3, 2) [p]. `pressed` (m,) are the elements that touch; at the
+        places `infinite`, pressure is known to be so.
         """
-        outline, factors = Outline(problem=problem, mesh=build(problem)), problem.factors()
-        mesh = outline.mesh
-        displacement = np.zeros((len(mesh.nodes), 2))
-        displacement[mesh.elements] = boundary.displacement
+        part, factors = problem.parts[number], problem.factors()
+        of_nodes = np.zeros((len(mesh.nodes), 2))
+        of_nodes[mesh.elements] = displacement
         field = StressField.of(
-            outline,
-            displacement[..., None],
-            boundary.traction[..., None],
-            [problem.loads, *(case.loads for case in problem.load_cases.values())],
+            Outline(problem=problem, mesh=mesh),
+            part.material,
+            of_nodes[..., None],
+            traction[..., None],
+            [loads[number] for loads in problem.volume_loads],
             np.array([[1.0, *(factors.get(case, 0.0) for case in problem.load_cases)]]),
         )
-        singular = infinite_starts(field, pressed) | _sheared(field, boundary.traction)
+        singular = infinite_starts(field, pressed) | _sheared(field, traction)
         for place in infinite:
             singular |= np.hypot(*(mesh.nodes[: len(singular)] - place).T) <= NEARLY * mesh.size
-        return cls(field=field, traction=boundary.traction, singular=singular)
+        return cls(name=part.name, field=field, traction=traction, singular=singular)
 
     def stress(self, points: object) -> Stress:
         """Stress at points (k, 2)."""
@@ -208,7 +214,7 @@ def infinite_starts(field: StressField, pressed: BoolArray) -> BoolArray:
         angle = float(np.mod(end + np.pi - start, 2 * np.pi))
         angle = 2 * np.pi if angle < FLAT else angle  # the faces of a crack
         faces = _face(field, after, start, pressed), _face(field, before, end, pressed)
-        result[after] = stress_is_infinite(start, angle, faces, problem.material.effective_poisson_ratio)
+        result[after] = stress_is_infinite(start, angle, faces, field.material.effective_poisson_ratio)
     return result
 
 

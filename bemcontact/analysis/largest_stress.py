@@ -39,11 +39,17 @@ Measure = Callable[[Stress], Array]
 
 def largest_stresses(body: BodyStress, whole: TriangulatedBody, pressed: BoolArray) -> LargestStresses:
     """Look for the largest stresses; `pressed` (m,) are the elements that touch."""
-    search = _Search(body=body, whole=whole, mirrors=_mirrors(body))
     problem, mesh = body.field.problem, body.field.mesh
+    mirrors = np.zeros(len(mesh.elements), bool)
+    for line in body.field.lines:
+        mirrors |= line.elements
+    search = _Search(body=body, whole=whole, mirrors=mirrors)
     zones = {}
     for zone in problem.zones:
-        edges = [mesh.edge_names.index(edge) for edge in problem.edges_of(zone)]
+        sides = (*problem.edges_of(zone), *problem.opposite_edges(zone))
+        edges = [mesh.edge_names.index(edge) for edge in sides if edge in mesh.edge_names]
+        if not edges:
+            continue
         own = np.flatnonzero(pressed & np.isin(mesh.edge, edges))
         zones[zone] = search.largest(own, lambda stress: stress.max_shear, np.flatnonzero(np.isin(mesh.edge, edges)))
     every = np.arange(len(mesh.elements))
@@ -152,12 +158,10 @@ class _Search:
 
         The stress on a boundary has other errors than that inside, which would draw the search there.
         """
-        mesh, result = self.body.field.mesh, points.copy()
-        for edge in np.unique(mesh.edge[self.mirrors]):
-            first = int(np.argmax(mesh.edge == edge))
-            origin, normal = mesh.nodes[mesh.elements[first, 0]], mesh.normals[first, 1]
-            away = (result - origin) @ normal
-            result -= (away + np.maximum(np.abs(away), BESIDE_LINE * mesh.size))[:, None] * normal
+        result, beside = points.copy(), BESIDE_LINE * self.body.field.mesh.size
+        for line in self.body.field.lines:
+            away = line.beyond(result)
+            result[:, line.axis] -= line.outward * (away + np.maximum(np.abs(away), beside))
         return result
 
     def _distance(self, point: Array, elements: IntArray) -> tuple[float, int]:
@@ -181,16 +185,3 @@ def _parabola(values: Array) -> Array:
     curvature[~falls] = -np.eye(2)
     place = np.linalg.solve(curvature, -np.stack([gx, gy], axis=1)[..., None])[..., 0]
     return np.where(falls[:, None], np.clip(place, -1, 1), 0.0)
-
-
-def _mirrors(body: BodyStress) -> BoolArray:
-    """Whether each element (m,) is on a straight edge that is held across alone, as a line of symmetry is."""
-    problem, mesh = body.field.problem, body.field.mesh
-    result = np.zeros(len(mesh.elements), bool)
-    for number, name in enumerate(mesh.edge_names):
-        condition, own = problem.edge_conditions.get(name), mesh.edge == number
-        if condition is None or len(condition.displacement.given) != 1 or condition.traction.given:
-            continue
-        across = mesh.normals[own][..., "xy".index(condition.displacement.given[0])]
-        result[own] = bool((abs(abs(across) - 1) < 1e-12).all())
-    return result

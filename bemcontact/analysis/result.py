@@ -179,22 +179,24 @@ class Result(Recorded):
         return None if self.boundary is None else self.boundary.equilibrium_slack
 
     @cached_property
-    def _body_stress(self):  # its type costs the time of importing it
-        """The stress in the body; `ProblemError` without a boundary."""
-        from bemcontact.analysis.body_stress import BodyStress
+    def _stresses(self):  # its type costs the time of importing it
+        """The stress in all bodies; `ProblemError` without a boundary."""
+        from bemcontact.analysis.stress_of_bodies import StressOfBodies
 
         pressure, _ = self.contact_fields()
         assert self.problem is not None
         assert self.boundary is not None
-        return BodyStress.of(self.problem, self.boundary, pressure[:, 1] > 0, self.accuracy.infinite_places)
+        return StressOfBodies.of(self.problem, self.boundary, pressure[:, 1] > 0, self.accuracy.infinite_places)
 
     @one_thread
-    def stress(self, points: ArrayLike) -> Stress:
+    def stress(self, points: ArrayLike, body: str | None = None) -> Stress:
         """Stress at points inside the body and on its boundary.
 
         Parameters
         ----------
         points : (k, 2) places (x, y) in the undeformed body [L]
+        body : name of the body, if there are several; if None, the first one that has a point inside, else on its
+            boundary
 
         Returns
         -------
@@ -207,22 +209,23 @@ class Result(Recorded):
         ProblemError
             A point is outside the body, or the result is that of a condensed problem, which has no body.
         """
-        return self._body_stress.stress(points)
+        return self._stresses.stress(points, body)
 
     @one_thread
-    def displacement(self, points: ArrayLike) -> Array:
+    def displacement(self, points: ArrayLike, body: str | None = None) -> Array:
         """Displacement (k, 2) [L] at points inside the body and on its boundary.
 
         Parameters
         ----------
         points : (k, 2) places (x, y) in the undeformed body [L]
+        body : as of `stress`
 
         Raises
         ------
         ProblemError
             As of `stress`.
         """
-        return self._body_stress.displacement(points)
+        return self._stresses.displacement(points, body)
 
     @one_thread
     def boundary_stress(self) -> dict[str, EdgeStress]:
@@ -233,7 +236,7 @@ class Result(Recorded):
         ProblemError
             The result is that of a condensed problem, which has no boundary.
         """
-        return {edge: self._body_stress.along(edge) for edge in self._body_stress.field.mesh.edge_names}
+        return {edge: self._stresses.along(edge) for edge in self._stresses.edges}
 
     @one_thread
     def largest_stresses(self) -> LargestStresses:
@@ -253,8 +256,9 @@ class Result(Recorded):
         """`largest_stresses`, which take as long as a solution."""
         from bemcontact.analysis.stress_bars import largest_with_bars
 
-        pressure, _ = self.contact_fields()
-        return largest_with_bars(self._body_stress, self.triangulated, pressure[:, 1] > 0, self.accuracy)
+        stresses = self._stresses
+        assert self.problem is not None
+        return largest_with_bars(self.problem, stresses, self.accuracy)
 
     @cached_property
     def triangulated(self) -> TriangulatedBody:
@@ -265,9 +269,7 @@ class Result(Recorded):
         ProblemError
             The result is that of a condensed problem, which has no body.
         """
-        from bemcontact.analysis.triangulated_body import triangulated_body
-
-        return triangulated_body(self._body_stress)
+        return self._stresses.filled
 
     def contact_fields(self) -> tuple[Array, Array]:
         """Pressure (m, 3) [p] and gap (m, 3) [L] at the nodes of each boundary element, of the zone of its edge.

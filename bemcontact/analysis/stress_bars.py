@@ -13,11 +13,11 @@ from bemcontact.adaptivity.error_bars import NOTHING, SAFETY
 from bemcontact.adaptivity.fields import solved
 from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.analysis.body_stress import BodyStress
-from bemcontact.analysis.largest_stress import RINGS, Measure, largest_stresses
-from bemcontact.analysis.triangulated_body import triangulated_body
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.analysis.largest_stress import RINGS, Measure
+from bemcontact.analysis.stress_of_bodies import StressOfBodies
+from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy
-from bemcontact.contact.stress import LargestStresses, Stress, StressPeak, TriangulatedBody
+from bemcontact.contact.stress import LargestStresses, Stress, StressPeak
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
 from bemcontact.problem.problem import Problem
 from bemcontact.serialization import Pair
@@ -28,26 +28,27 @@ TELLS_NOTHING = 1.0
 """Error bar from which on a stress is not known."""
 
 
-def largest_with_bars(
-    body: BodyStress, whole: TriangulatedBody, pressed: BoolArray, accuracy: Accuracy
-) -> LargestStresses:
+def largest_with_bars(problem: Problem, stresses: StressOfBodies, accuracy: Accuracy) -> LargestStresses:
     """Find the largest stresses, with error bars; none of these are known where those of pressures are not."""
-    largest = largest_stresses(body, whole, pressed)
+    largest = stresses.largest
     pressures = [item.bar for item in accuracy.bars if item.quantity == "pressure"]
     known = [bar for bar in pressures if bar is not None]
     if accuracy.met is None or len(known) < len(pressures):
         return largest
-    problem = body.field.problem
     of_fine = problem.mesh.refine % 2 == 0
     refine = problem.mesh.refine // 2 if of_fine else 2 * problem.mesh.refine
     try:
-        other, its = _on_mesh(cut(problem, refine), accuracy.infinite_places)
+        other = _on_mesh(cut(problem, refine), accuracy.infinite_places)
     except (ProblemError, SingularSystemError, SolverError):
         return largest
-    pair = _Pair(one=body, two=other, factor=SAFETY if of_fine else 1 + SAFETY, floor=max([NOTHING, *known]))
+    factor, its = SAFETY if of_fine else 1 + SAFETY, other.largest
+    pairs = {
+        one.name: _Pair(one=one, two=two, factor=factor, floor=max([NOTHING, *known]))
+        for one, two in zip(stresses.bodies, other.bodies, strict=True)
+    }
 
     def barred(peak: StressPeak | None, on_other: StressPeak | None, measure: Measure) -> StressPeak | None:
-        return None if peak is None else replace(peak, bar=pair.bar(peak, on_other, measure))
+        return None if peak is None else replace(peak, bar=pairs[peak.body].bar(peak, on_other, measure))
 
     return replace(
         largest,
@@ -65,12 +66,10 @@ def _max_shear(stress: Stress) -> Array:
     return stress.max_shear
 
 
-def _on_mesh(problem: Problem, infinite: list[Pair]) -> tuple[BodyStress, LargestStresses]:
-    """The stress of a problem on its mesh, and the largest; `SolverError` without a contact state."""
+def _on_mesh(problem: Problem, infinite: list[Pair]) -> StressOfBodies:
+    """The stress of a problem on its mesh; `SolverError` without a contact state."""
     answer = solved(problem).answers[0]
-    pressed = answer.pressure.sum(axis=0)[:, 1] > 0
-    body = BodyStress.of(problem, answer.state, pressed, infinite)
-    return body, largest_stresses(body, triangulated_body(body), pressed)
+    return StressOfBodies.of(problem, answer.state, answer.pressure.sum(axis=0)[:, 1] > 0, infinite)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -1,7 +1,7 @@
 """Displacement gradient and displacement inside a body, from the fields on its boundary."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -14,6 +14,7 @@ from bemcontact.bem.gradient_kernels import GradientIntegrals
 from bemcontact.bem.influence import Collocation, Influence, InfluenceRows
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.reference_element import RHO_OF_T
+from bemcontact.bem.symmetry import SymmetryLine
 
 PAIRS = 16_000
 """Pairs of a point and an element at a time: about ten arrays of them stay in the second-level cache."""
@@ -42,10 +43,12 @@ class Interior:
     ----------
     mesh : Mesh
     poisson_ratio : effective one, of plane strain
+    lines : lines of symmetry, of which the first along each axis is used
     """
 
     mesh: Mesh
     poisson_ratio: float
+    lines: Sequence[SymmetryLine] = ()
 
     @cached_property
     def influence(self) -> Influence:
@@ -116,17 +119,38 @@ class Interior:
         return GradientIntegrals(J, K)
 
     def gradient(self, z: ComplexArray, fields: BoundaryFields) -> Gradient:
-        """Gradient (k, q) at points (k,) inside the body."""
+        """Gradient (k, q) at points (k,) inside the body.
+
+        The image of u in a line x = const or y = const is ± conj(u), and so the images of a and b are conj(a), conj(b).
+        """
+        for line in self.used_lines:
+            fields = _prescribed(fields, line)
         W, X = fields.densities
-        a, b = np.empty((2, len(z), W.shape[1]), complex)
+        a, b = np.zeros((2, len(z), W.shape[1]), complex)
         c = 1 / (8 * np.pi * (1 - self.poisson_ratio))
         conjugate = W.conj()
-        for block in self._blocks(len(z)):
-            J, K = (part.reshape(len(part), -1) for part in self.integrals(z[block]))
-            S = J @ W
-            a[block] = c * ((fields.kappa - 1) * S.real + 1j * (fields.kappa + 1) * S.imag)
-            b[block] = c * (J.conj() @ X + K @ conjugate)
+        for seen, mirrored in self._images(z):
+            for block in self._blocks(len(z)):
+                J, K = (part.reshape(len(part), -1) for part in self.integrals(seen[block]))
+                S = J @ W
+                one = c * ((fields.kappa - 1) * S.real + 1j * (fields.kappa + 1) * S.imag)
+                other = c * (J.conj() @ X + K @ conjugate)
+                a[block] += one.conj() if mirrored else one
+                b[block] += other.conj() if mirrored else other
         return Gradient(a, b)
+
+    @cached_property
+    def used_lines(self) -> list[SymmetryLine]:
+        """The first line of symmetry along each axis: the image in a second one would have images without end."""
+        return [line for i, line in enumerate(self.lines) if line.axis not in [other.axis for other in self.lines[:i]]]
+
+    def _images(self, z: ComplexArray) -> list[tuple[ComplexArray, bool]]:
+        """Points (k,) and their images, and whether these are mirrored an odd number of times."""
+        result = [(z, False)]
+        for line in self.used_lines:
+            at = (line.place - self.mesh.center[line.axis]) / self.mesh.reference_length
+            result += [(2 * at - x.conj() if line.axis == 0 else 2j * at + x.conj(), not odd) for x, odd in result]
+        return result
 
     def displacement(self, z: ComplexArray, fields: BoundaryFields) -> ComplexArray:
         """Displacement (k, q) over L0 at points (k,) inside the body, by Somigliana's identity."""
@@ -151,6 +175,17 @@ class Interior:
         if len(z):
             influence.each_block(points, place)
         return result
+
+
+def _prescribed(fields: BoundaryFields, line: SymmetryLine) -> BoundaryFields:
+    """The fields with the traction along a line of symmetry and the displacement across it alone: both are prescribed."""
+    P, D = fields.P.copy(), fields.D.copy()
+    P[line.elements], D[line.elements] = (
+        (1j * P[line.elements].imag, D[line.elements].real)
+        if line.axis == 0
+        else (P[line.elements].real, 1j * D[line.elements].imag)
+    )
+    return replace(fields, P=P, D=D)
 
 
 def _angles(tau: ComplexArray, root: kernels.Root) -> Array:

@@ -14,7 +14,9 @@ from bemcontact.bem.interior import Interior
 from bemcontact.bem.loading import VolumeField, particular_field
 from bemcontact.bem.mesh import CORNER, Mesh
 from bemcontact.bem.outline import ROUGH, Outline
+from bemcontact.bem.symmetry import SymmetryLine, symmetry_lines
 from bemcontact.problem.conditions import Loads
+from bemcontact.problem.material import Material
 from bemcontact.problem.nearest_places import surface_corners
 from bemcontact.problem.problem import Problem
 
@@ -64,7 +66,7 @@ def smooth_starts(outline: Outline) -> BoolArray:
     alike = np.array([[one == other for other in what] for one in what])[mesh.edge, mesh.edge[before]]
     smooth = (same | (level & alike)) & (abs(mesh.turns) < CORNER)
     for name, zone in problem.zones.items():
-        for edge in map(problem.edge, problem.edges_of(name)):
+        for edge in map(problem.edge, {*problem.edges_of(name)}.intersection(mesh.edge_names)):
             for corner in surface_corners(edge, zone.surface, at_ends=True):
                 place = edge.points(np.array([corner.fraction]))
                 smooth &= np.hypot(*(mesh.nodes[element] - place).T) > NEARLY * mesh.size
@@ -83,31 +85,36 @@ class StressField:
 
     Parameters
     ----------
-    outline : the curves under the elements
+    outline : the curves under the elements of the body
+    material : of the body
     smooth : (m,) `smooth_starts`
     fields : on the boundary, less the particular solutions
     loads : volume loads of the states, and factors of them (q, …)
     """
 
     outline: Outline
+    material: Material
     smooth: BoolArray
     fields: BoundaryFields
     loads: Sequence[Loads]
     factors: Array
 
     @classmethod
-    def of(cls, outline: Outline, displacement: Array, traction: Array, loads: Sequence[Loads], factors: Array) -> Self:
+    def of(
+        cls, outline: Outline, material: Material, displacement: Array, traction: Array, loads: Sequence[Loads],
+        factors: Array,
+    ) -> Self:  # fmt: skip
         """Read the boundary: displacement (N, 2, q) [L], traction (m, 3, 2, q) [p]."""
-        problem, mesh, u, t = outline.problem, outline.mesh, displacement, traction
+        mesh, u, t = outline.mesh, displacement, traction
         for item, factor in zip(loads, factors.T, strict=True):
             if item != Loads():
-                field = particular_field(item, problem.material, mesh, mesh.nodes)
+                field = particular_field(item, material, mesh, mesh.nodes)
                 u = u - field.displacement[..., None] * factor
                 on_boundary = np.einsum("mkij,mkj->mki", field.stress[mesh.elements], mesh.normals)
                 t = t - on_boundary[..., None] * factor
         smooth = smooth_starts(outline)
-        fields = BoundaryFields.of(mesh, problem.material, u, t, smooth)
-        return cls(outline=outline, smooth=smooth, fields=fields, loads=loads, factors=factors)
+        fields = BoundaryFields.of(mesh, material, u, t, smooth)
+        return cls(outline=outline, material=material, smooth=smooth, fields=fields, loads=loads, factors=factors)
 
     @property
     def problem(self) -> Problem:
@@ -122,14 +129,20 @@ class StressField:
     @cached_property
     def interior(self) -> Interior:
         """The integrals over the boundary."""
-        return Interior(mesh=self.mesh, poisson_ratio=self.problem.material.effective_poisson_ratio)
+        nu = self.material.effective_poisson_ratio
+        return Interior(mesh=self.mesh, poisson_ratio=nu, lines=self.lines)
+
+    @cached_property
+    def lines(self) -> list[SymmetryLine]:
+        """The lines of symmetry."""
+        return symmetry_lines(self.problem, self.mesh)
 
     def stress(self, at: Located) -> Array:
         """σxx, σyy, σxy (3, k, q) [p]; where an element ends, the mean of both sides; not a number outside."""
         result = np.full((3, len(at.points), len(self.factors)), np.nan)
         inside, on = np.flatnonzero(at.inside), np.flatnonzero(~at.inside & ~at.outside)
         gradient = self.interior.gradient(self.interior.z(at.points[inside]), self.fields)
-        result[:, inside] = gradient.stress(self.problem.material) + self._volume_stress(at.points[inside])
+        result[:, inside] = gradient.stress(self.material) + self._volume_stress(at.points[inside])
         result[:, on] = self.stress_on(at.element[on], at.xi[on], at.points[on])
         end = on[at.node[on] >= 0]
         sides = ((at.node[end], -1.0), (self.mesh.before[at.node[end]], 1.0))
@@ -138,8 +151,21 @@ class StressField:
         return result
 
     def stress_on(self, element: IntArray, xi: Array, points: Array) -> Array:
-        """σxx, σyy, σxy (3, k, q) [p] on the boundary at ξ (k,) of elements (k,), where points (k, 2) [L] are."""
-        return self.fields.gradient(element, xi).stress(self.problem.material) + self._volume_stress(points)
+        """σxx, σyy, σxy (3, k, q) [p] on the boundary at ξ (k,) of elements (k,), where points (k, 2) [L] are.
+
+        On a line of symmetry it is that of the inside, but for corners.
+        """
+        gradient = self.fields.gradient(element, xi)
+        for line in self.interior.used_lines:
+            corner = ((xi <= -1) & ~self.smooth[element]) | ((xi >= 1) & ~self.smooth[self.mesh.elements[element, 2]])
+            own = np.flatnonzero(line.elements[element] & ~corner)
+            beside = points[own].copy()
+            beside[:, line.axis] = line.place - line.outward * ON_BOUNDARY * self.mesh.size
+            for part, inside in zip(
+                gradient, self.interior.gradient(self.interior.z(beside), self.fields), strict=True
+            ):
+                part[own] = inside
+        return gradient.stress(self.material) + self._volume_stress(points)
 
     def _volume_stress(self, points: Array) -> Array:
         """σxx, σyy, σxy (3, k, q) [p] of the particular solutions."""
@@ -163,7 +189,7 @@ class StressField:
 
     def out_of_plane(self, in_plane: Array, points: Array) -> Array:
         """σzz (k, q) [p] of in-plane stresses (3, k, q) at points (k, 2): that of plane strain, or zero."""
-        material = self.problem.material
+        material = self.material
         if material.state == "plane_stress":
             return np.zeros_like(in_plane[0])
         zz = material.poisson_ratio * (in_plane[0] + in_plane[1])
@@ -176,7 +202,7 @@ class StressField:
         """Particular solutions at points, with their factors (q,)."""
         both = zip(self.loads, self.factors.T, strict=True)
         return [
-            (particular_field(item, self.problem.material, self.mesh, points), factor)
+            (particular_field(item, self.material, self.mesh, points), factor)
             for item, factor in both
             if item != Loads()
         ]

@@ -151,6 +151,8 @@ class StressPeak(WithHints):
     """Name of the edge on which it is; None inside."""
     bar: float | None = None
     """Estimated error, relative to the value; None if it is not known."""
+    body: str = ""
+    """Name of the body, if there are several."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

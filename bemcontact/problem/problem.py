@@ -411,6 +411,13 @@ class Problem(SpecModel):
             edges = tuple(name for name in edges_that_see(lines, surface) if name not in self._held_edges())
         return BodyZone(edges=edges, surface=surface)
 
+    def opposite_edges(self, contact: str) -> tuple[str, ...]:
+        """Names of the edges of the second elastic body of a contact that the first one may touch; none of others."""
+        surface = self.zones[contact].surface
+        if not isinstance(surface, BodySurface) or not surface.elastic:
+            return ()
+        return tuple(dict.fromkeys(surface.edges[part.onto].name for part in self.opposite(contact)))
+
     def _held_edges(self) -> set[str]:
         """Names of the edges with a condition, in the problem or in a load case."""
         return {*self.edge_conditions}.union(*(case.conditions for case in self.load_cases.values()))

@@ -70,7 +70,7 @@ def _range(values: Array) -> str:
 def prescribed(problem: Problem, edge: Edge) -> Iterator[str]:
     """Conditions of an edge: ``u_x = 0``, ``t_y = -3.6 kN/cm²``, ``pressure 3 N/mm²``, ``may touch in foot``."""
     for name in problem.zones:
-        if edge.name in (*problem.edges_of(name), *opposite_edges(problem, name)):
+        if edge.name in (*problem.edges_of(name), *problem.opposite_edges(name)):
             yield f"may touch in {name}"
     if edge.name in problem.edge_conditions:
         yield from _conditions(problem.edge_conditions[edge.name], edge, problem.units)
@@ -108,14 +108,6 @@ def acting_volume_loads(problem: Problem) -> Iterator[tuple[float, Loads]]:
     factors = [1.0, *(problem.factors().get(case, 0.0) for case in problem.load_cases)]
     for factor, each in zip(factors, problem.volume_loads, strict=True):
         yield from ((factor, loads) for loads in each if factor)
-
-
-def opposite_edges(problem: Problem, zone: str) -> tuple[str, ...]:
-    """Names of the edges of the second body of a contact of two elastic bodies that the first one may touch."""
-    surface = problem.zones[zone].surface
-    if not isinstance(surface, BodySurface) or not surface.elastic:
-        return ()
-    return tuple(dict.fromkeys(surface.edges[part.onto].name for part in problem.opposite(zone)))
 
 
 def _acting(case: str, factor: float) -> str:

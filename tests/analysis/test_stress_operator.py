@@ -18,7 +18,7 @@ def places(result: bemcontact.Result, count: int = 40) -> np.ndarray:
     nodes = result.boundary.points
     rng = np.random.default_rng(3)
     points = rng.uniform(nodes.min((0, 1)), nodes.max((0, 1)), (count, 2))
-    at = result._body_stress.field.locate(points)
+    at = result._stresses.bodies[0].field.locate(points)
     return np.vstack([points[at.inside], nodes[:, 1]])
 
 

@@ -27,7 +27,7 @@ def test_mean_stress_is_that_of_the_tractions():
     a, b, c = np.moveaxis(body.points[body.triangles], 1, 0)
     areas = ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2
     whole = areas @ body.stress.components[body.triangles].mean(axis=1)
-    weights = result._body_stress.field.mesh.tributary
+    weights = result._stresses.bodies[0].field.mesh.tributary
     moments = np.einsum("mk,mki,mkj->ij", weights, state.traction, state.points)
     expected = np.array([moments[0, 0], moments[1, 1], (moments[0, 1] + moments[1, 0]) / 2])
     assert whole == pytest.approx(expected, abs=0.01 * abs(expected).max())

@@ -44,7 +44,6 @@ from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, dr
 from bemcontact.report.formatting import (
     NEGLIGIBLE,
     acting_volume_loads,
-    opposite_edges,
     prescribed,
     tool_in_words,
     volume_loads,
@@ -99,7 +98,7 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
 
 def role(problem: Problem, edge: str) -> str:
     """Role of an edge: one of `ROLES`."""
-    if any(edge in (*problem.edges_of(zone), *opposite_edges(problem, zone)) for zone in problem.zones):
+    if any(edge in (*problem.edges_of(zone), *problem.opposite_edges(zone)) for zone in problem.zones):
         return "may touch"
     conditions = [condition for _, condition in _acting(problem, edge)]
     if not conditions:

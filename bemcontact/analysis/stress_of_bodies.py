@@ -1,0 +1,200 @@
+"""Stress and displacement of one state of all elastic bodies of a problem."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from bemcontact.analysis.body_stress import BodyStress, ensure_in_body
+from bemcontact.analysis.largest_stress import largest_stresses
+from bemcontact.analysis.triangulated_body import triangulated_body
+from bemcontact.arrays import Array, BoolArray, real_array
+from bemcontact.bem.mesh import BoundaryState, Mesh, build
+from bemcontact.bem.stress_field import Located
+from bemcontact.contact.stress import EdgeStress, LargestStresses, Stress, StressPeak, TriangulatedBody
+from bemcontact.errors import ProblemError
+from bemcontact.problem.problem import Problem
+from bemcontact.problem.wording import unknown_word
+from bemcontact.serialization import Pair
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StressOfBodies:
+    """The stress of each elastic body, in one state.
+
+    Parameters
+    ----------
+    bodies : of each elastic body
+    pressed : (m,) of each, which elements touch
+    """
+
+    bodies: tuple[BodyStress, ...]
+    pressed: tuple[BoolArray, ...]
+
+    @classmethod
+    def of(cls, problem: Problem, boundary: BoundaryState, pressed: BoolArray, infinite: Sequence[Pair]) -> Self:
+        """Read the boundary of a problem on its mesh.
+
+        `pressed` (m,) are the elements that touch; at the places `infinite`, pressure is known to be so.
+        """
+        mesh = build(problem)
+        touching, places = _on_both_sides(mesh, pressed, infinite)
+        bodies = [
+            BodyStress.of(
+                problem, number, part.mesh, boundary.displacement[part.elements], boundary.traction[part.elements],
+                touching[part.elements], places,
+            )
+            for number, part in enumerate(mesh.parts)
+        ]  # fmt: skip
+        return cls(bodies=tuple(bodies), pressed=tuple(touching[part.elements] for part in mesh.parts))
+
+    @property
+    def edges(self) -> tuple[str, ...]:
+        """Names of all edges."""
+        return tuple(edge for body in self.bodies for edge in body.field.mesh.edge_names)
+
+    def along(self, edge: str) -> EdgeStress:
+        """Stress along an edge."""
+        return next(body for body in self.bodies if edge in body.field.mesh.edge_names).along(edge)
+
+    def stress(self, points: object, name: str | None) -> Stress:
+        """Stress at points (k, 2): in a body, or in the first that has the point."""
+        placed = self._placed(points, name)
+        if len(self.bodies) == 1:
+            return self.bodies[0].at(placed[0])
+        owner = _owner(placed)
+        each = [body.at(at) for body, at in zip(self._named(name), placed, strict=True)]
+        rows = np.arange(len(owner))
+        return Stress(
+            points=placed[0].points,
+            components=np.stack([item.components for item in each])[owner, rows],
+            zz=np.stack([item.zz for item in each])[owner, rows],
+            kind=np.stack([item.kind for item in each])[owner, rows],
+        )
+
+    def displacement(self, points: object, name: str | None) -> Array:
+        """Displacement (k, 2) [L] at points (k, 2), likewise."""
+        placed = self._placed(points, name)
+        each = [body.field.displacement(at)[..., 0] for body, at in zip(self._named(name), placed, strict=True)]
+        return np.stack(each)[_owner(placed), np.arange(len(each[0]))]
+
+    def _named(self, name: str | None) -> Sequence[BodyStress]:
+        """The body of a name, or all; `ProblemError` if there is none of this name."""
+        if name is None:
+            return self.bodies
+        own = [body for body in self.bodies if body.name == name]
+        if not own:
+            names = [body.name for body in self.bodies if body.name]
+            raise ProblemError(unknown_word("elastic body", str(name), names))
+        return own
+
+    def _placed(self, points: object, name: str | None) -> list[Located]:
+        """Where points are in each body, or in one; `ProblemError` if one is in none."""
+        array, bodies = real_array(points, "points", (None, 2)), self._named(name)
+        placed = [body.field.locate(array) for body in bodies]
+        nowhere = np.all([at.outside for at in placed], axis=0)
+        if nowhere.any():
+            nearest = int(np.argmin([at.distance[np.argmax(nowhere)] for at in placed]))
+            ensure_in_body(bodies[nearest].field, placed[nearest]._replace(outside=nowhere))
+        return placed
+
+    @cached_property
+    def triangulated(self) -> tuple[TriangulatedBody, ...]:
+        """Displacement and stress on triangles that fill each body."""
+        return tuple(map(triangulated_body, self.bodies))
+
+    @cached_property
+    def filled(self) -> TriangulatedBody:
+        """Displacement and stress on triangles that fill all bodies; points on their boundaries come first."""
+        if len(self.bodies) == 1:
+            return self.triangulated[0]
+        rims, counts = ([len(values(body)) for body in self.triangulated] for values in (_element, _points))
+        first, inside = np.cumsum([0, *rims]), np.cumsum([sum(rims), *np.subtract(counts, rims)])
+        new = [
+            np.append(first[i] + np.arange(rims[i]), inside[i] + np.arange(counts[i] - rims[i]))
+            for i in range(len(counts))
+        ]
+        order = np.argsort(np.concatenate(new))
+        elements = np.cumsum([0, *(len(body.field.mesh.elements) for body in self.bodies)])
+        stress = [body.stress for body in self.triangulated]
+        return TriangulatedBody(
+            points=np.concatenate([body.points for body in self.triangulated])[order],
+            triangles=np.concatenate([new[i][body.triangles] for i, body in enumerate(self.triangulated)]),
+            displacement=np.concatenate([body.displacement for body in self.triangulated])[order],
+            stress=Stress(
+                points=np.concatenate([item.points for item in stress])[order],
+                components=np.concatenate([item.components for item in stress])[order],
+                zz=np.concatenate([item.zz for item in stress])[order],
+                kind=np.concatenate([item.kind for item in stress])[order],
+            ),
+            element=np.concatenate([elements[i] + body.element for i, body in enumerate(self.triangulated)]),
+        )
+
+    @cached_property
+    def largest(self) -> LargestStresses:
+        """The largest stresses of all bodies."""
+        each = [
+            _with_name(body.name, largest_stresses(body, whole, pressed))
+            for body, whole, pressed in zip(self.bodies, self.triangulated, self.pressed, strict=True)
+        ]
+        zones = list(dict.fromkeys(zone for item in each for zone in item.shear))
+        return LargestStresses(
+            shear={zone: _largest([item.shear.get(zone) for item in each]) for zone in zones},
+            inside=_largest([item.inside for item in each]),
+            boundary=_largest([item.boundary for item in each]),
+            singular=np.concatenate([item.singular for item in each]),
+        )
+
+
+def _points(body: TriangulatedBody) -> Array:
+    return body.points
+
+
+def _element(body: TriangulatedBody) -> Array:
+    return body.element
+
+
+def _owner(placed: Sequence[Located]) -> Array:
+    """Number (k,) of the first body that has each point, inside rather than on its boundary."""
+    inside, outside = (np.stack([getattr(at, name) for at in placed]) for name in ("inside", "outside"))
+    return np.where(inside.any(axis=0), inside.argmax(axis=0), (~outside).argmax(axis=0))
+
+
+def _on_both_sides(mesh: Mesh, pressed: BoolArray, infinite: Sequence[Pair]) -> tuple[BoolArray, Array]:
+    """Which elements (m,) touch, those of the second bodies included, and places of infinite pressure on both sides."""
+    touching, places = pressed.copy(), [*map(tuple, np.reshape(infinite, (-1, 2)).tolist())]
+    for facing in mesh.facing.values():
+        own = np.flatnonzero(facing >= 0)
+        touching[facing[own[pressed[own]]]] = True
+        for place in list(places):
+            for local in (0, 2):
+                away = np.hypot(*(mesh.nodes[mesh.elements[own, local]] - place).T)
+                if away.size and away.min() <= SAME_PLACE * mesh.size:
+                    other = mesh.elements[facing[own[away.argmin()]], 2 - local]
+                    places.append(tuple(mesh.nodes[other].tolist()))
+    return touching, np.array(places).reshape(-1, 2)
+
+
+def _largest(peaks: Sequence[StressPeak | None]) -> StressPeak | None:
+    """The largest of some stresses; None if there is none."""
+    return max((peak for peak in peaks if peak is not None), key=lambda peak: peak.value, default=None)
+
+
+def _with_name(body: str, largest: LargestStresses) -> LargestStresses:
+    """The largest stresses of a body, with its name."""
+
+    def named(peak: StressPeak | None) -> StressPeak | None:
+        return None if peak is None else replace(peak, body=body)
+
+    return replace(
+        largest,
+        shear={zone: named(peak) for zone, peak in largest.shear.items()},
+        inside=named(largest.inside),
+        boundary=named(largest.boundary),
+    )
+
+
+SAME_PLACE = 1e-9
+"""Distance of a node from a place over the size of the bodies up to which it is there."""
