@@ -29,9 +29,11 @@ from bemcontact.problem.key_path import existing_path, parsed_path
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.wording import described, unknown_word
 
-MODULUS = "material.young_modulus"
+MODULUS = "young_modulus"
 BODY = ("material", "boundary", "mesh")
-"""Parts of a spec that make the body, so that more than gaps and loads depends on them."""
+"""Parts of a spec, or of one of its bodies, that make a body, so that more than gaps and loads depends on them."""
+PLACED = ("materials", "copy_of", "shift", "rotate", "about", "between")
+"""Parts that make or place several bodies."""
 SHARES = tuple(0.5**k for k in range(1, 11))
 """Shares of the way between two values, at which gaps and loads are checked for linear change."""
 NOTHING = 1e-13
@@ -145,8 +147,7 @@ def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Prob
         except ProblemError as error:
             refused.append(error)
         else:
-            parts = {name: getattr(found[value].problem, name) for name in ("boundary", "mesh", "accuracy")}
-            on_mesh = problem.model_copy(update=parts)
+            on_mesh = problem.on_mesh_of(found[value].problem)
     if not found:
         raise refused[0]
     return on_mesh, found
@@ -159,14 +160,18 @@ def _no_coarser(problem: Problem, on_mesh: Problem) -> Problem:
     """
     if on_mesh is problem:
         return problem
-    ends = {edge.name: edge.breakpoints()[1:-1].tolist() for edge in on_mesh.boundary.edges}
-    mesh = problem.mesh.model_copy(update={"adapt": True})
-    return problem.model_copy(update={"boundary": on_mesh.boundary.with_element_ends(ends), "mesh": mesh})
+    ends = {edge.name: edge.breakpoints()[1:-1].tolist() for edge in on_mesh.edges}
+    whole = problem.on_mesh_of(on_mesh.with_element_ends(ends))
+    return whole.model_copy(
+        update={"mesh": problem.mesh.model_copy(update={"adapt": True}), "accuracy": problem.accuracy}
+    )
 
 
 def _accuracy(varied: Variation, value: float, found: Meshed | None, halved: bool) -> Accuracy:
     """Accuracy of the mesh at one value of a key; a load that presses nothing has no errors to estimate."""
-    if found and found.problem.boundary is varied.problem.boundary:
+    if found and all(
+        one.boundary is other.boundary for one, other in zip(found.problem.parts, varied.problem.parts, strict=True)
+    ):
         return found.accuracies[0]
     try:
         singular = found.singular if found else ()
@@ -210,9 +215,9 @@ def _change(contact: CondensedContact, problem: Problem | None, key: str, pressu
     if problem is None:
         known = ", ".join((*contact.changes, f"initial_gap[0] to initial_gap[{contact.size - 1}]"))
         raise ProblemError(f"there is no '{key}' in this condensed problem; it has: {known}")
-    if key == MODULUS:
-        E = problem.material.young_modulus
-        return modulus_change(contact, condense(problem.with_value(MODULUS, 2 * E)), E, pressure)
+    if key.split(".")[-1] == MODULUS:
+        E = stated_value(problem, key)
+        return modulus_change(contact, condense(problem.with_value(key, 2 * E)), E, pressure, several=problem.several)
     value = stated_value(problem, key)
     other = 2 * value or 1.0
     first, last = between(Variation(problem, key), value, other)
@@ -249,7 +254,7 @@ def between(varied: Variation, start: float, end: float) -> tuple[CondensedConta
     extrapolated. `ProblemError` if neither value can be condensed, more than gaps and loads depends on the key, or the
     dependence is not linear. The mesh of the problem must not be one to be fitted.
     """
-    if varied.path[0] in BODY:
+    if {*BODY} & {*varied.path[:3:2]} or {*PLACED} & {*varied.path}:
         raise ProblemError(Issue(path=varied.path, message=f"the compliance depends on it; {EXACT}"))
     if varied.acts_on_contact:
         return _stepped(varied, start, end)

@@ -182,19 +182,23 @@ def sensitivities(
     )
 
 
-def modulus_change(contact: CondensedContact, doubled: CondensedContact, modulus: float, pressure: Array) -> Change:
+def modulus_change(
+    contact: CondensedContact, doubled: CondensedContact, modulus: float, pressure: Array, *, several: bool = False
+) -> Change:
     """Change of the gap at a given pressure (n,) with Young's modulus E, per unit of E.
 
     M falls as 1/E, and so does the part Δs/E of Δ1 that loads bring about; Δu, from prescribed displacements, stays.
     `doubled` is the problem with 2 E. Δ1(E) - Δ1(2E) = Δs/(2E) separates them, so that
-    d(Δ1 + M p)/dE = -(2 (Δ1(E) - Δ1(2E)) + M p)/E. The change is that of this state only, since it contains M p.
-    `ProblemError` if the second problem is not the first with twice the modulus.
+    d(Δ1 + M p)/dE = -2 (Δ1(E) - Δ1(2E) + (M(E) - M(2E)) p)/E. The change is that of this state only, since it contains
+    p. `ProblemError` if the second problem is not the first with twice the modulus; of `several` bodies only one may
+    have another modulus.
     """
     M = contact.compliance
-    if M.shape != doubled.compliance.shape or np.abs(2 * doubled.compliance - M).max() > INVERSE * np.abs(M).max():
+    wrong = M.shape != doubled.compliance.shape
+    if wrong or (not several and np.abs(2 * doubled.compliance - M).max() > INVERSE * np.abs(M).max()):
         raise ProblemError("the second problem is not the first with twice Young's modulus: its compliance is not half")
-    loads = 2 * (contact.free_displacement - doubled.free_displacement)
-    return Change(-(loads + M @ pressure) / modulus, np.zeros(contact.free_motions))
+    loads = contact.free_displacement - doubled.free_displacement
+    return Change(-2 * (loads + (M - doubled.compliance) @ pressure) / modulus, np.zeros(contact.free_motions))
 
 
 def _fitting(contact: CondensedContact, key: str, change: Change) -> Change:

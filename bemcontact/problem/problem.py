@@ -623,6 +623,11 @@ class Problem(SpecModel):
         mesh = self.mesh.model_copy(update={"adapt": False})
         return self._with_boundaries(changed, mesh=mesh, variants={})
 
+    def on_mesh_of(self, other: Self) -> Self:
+        """Copy on the mesh of another problem with the same boundaries, with its accuracy."""
+        boundaries = {part.name: part.boundary for part in other.parts}
+        return self._with_boundaries(boundaries, mesh=other.mesh, accuracy=other.accuracy)
+
     def to_be_meshed(self, accuracy: float) -> Self:
         """Copy whose mesh is to be found for an accuracy: no edge states elements, and there are no variants."""
         boundaries = {part.name: part.boundary.without_elements() for part in self.parts}
