@@ -1,6 +1,6 @@
 """Element sizes where two elastic bodies face each other: the first has those of both, the second follows the first."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,11 +30,6 @@ class FacingStretch:
     onto: int
     places: Array
     opposite: Array
-
-    @property
-    def ends(self) -> list[float]:
-        """Positions of both ends on the first loop."""
-        return self.places[[0, -1]].tolist()
 
     @property
     def opposite_ends(self) -> list[float]:
@@ -67,6 +62,16 @@ class FacingStretch:
     def _first(self, positions: Array) -> Array:
         """Positions on the first loop opposite to those on the second one."""
         return np.interp(positions, self.opposite[::-1], self.places[::-1])
+
+
+def ends_of_parts(problem: Problem, loops: Sequence[Loop]) -> Iterator[tuple[int, list[float]]]:
+    """Number of the loop and positions on it where a part ends that is opposite to another body, elastic or rigid."""
+    for contact in problem.contacts:
+        for part in problem.opposite(contact):
+            for number, loop in enumerate(loops):
+                if part.edge in loop.start_of:
+                    length = next(edge.length for edge in loop.edges if edge.name == part.edge)
+                    yield number, [loop.start_of[part.edge] + at * length for at in (part.low, part.high)]
 
 
 def facing_stretches(problem: Problem, loops: Sequence[Loop]) -> list[FacingStretch]:

@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from bemcontact.adaptivity.facing_sizes import FacingStretch, facing_stretches
+from bemcontact.adaptivity.facing_sizes import FacingStretch, ends_of_parts, facing_stretches
 from bemcontact.adaptivity.first_sizes import SizedOutline, outline, surface_sizes
 from bemcontact.adaptivity.sizes import GROWTH, Layers, Limit, Loop
 from bemcontact.errors import Issue, ProblemError
@@ -68,9 +68,10 @@ class MeshSizes:
             limits.append(useful_limits(loop, own))
             marks.append(ends)
         facing = facing_stretches(problem, shape.loops)
+        for number, places in ends_of_parts(problem, shape.loops):
+            marks[number] += places
         for item in facing:
-            for loop, places in ((item.loop, item.ends), (item.onto, item.opposite_ends)):
-                marks[loop] += places
+            marks[item.onto] += item.opposite_ends
         # A mesh that is found asks for the accuracy as before.
         kept = problem.model_copy(update={"accuracy": problem.asked_accuracy})
         return cls(problem=kept, outline=shape, sources=limits, marks=marks, facing=facing)

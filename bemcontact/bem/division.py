@@ -57,12 +57,12 @@ class Matched(NamedTuple):
 def divided(problem: Problem) -> Division:
     """Divide all edges of a problem into its elements, each cut as its mesh says."""
     refine, edges = problem.mesh.refine, {edge.name: edge for edge in problem.edges}
-    matched = [*matched_parts(problem)]
-    if not matched:
+    matched, parts = [*matched_parts(problem)], [part for name in problem.contacts for part in problem.opposite(name)]
+    if not parts:
         return Division(fractions={name: _thirds(edge.breakpoints(refine)) for name, edge in edges.items()}, facing={})
     ends = {name: edge.breakpoints(1) for name, edge in edges.items()}
     for name, edge in edges.items():
-        places = {end for item in matched if item.part.edge == name for end in item.part[1:3]}
+        places = {end for part in parts if part.edge == name for end in part[1:3]}
         ends[name] = _with_ends(ends[name], sorted(places), edge)
     fractions: dict[str, Array] = {}
     facing: dict[str, list[Facing]] = {item.contact: [] for item in matched}

@@ -80,10 +80,20 @@ class Outline:
         names, zones = self.mesh.edge_names, map(self.problem.edges_of, self.problem.zones)
         of_edges = np.array([[name in edges for name in names] for edges in zones], bool).reshape(-1, len(names))
         in_zones = of_edges[:, self.mesh.edge]
-        for number, zone in enumerate(self.problem.zones):
-            if zone in self.mesh.facing:
-                in_zones[number] = self.mesh.facing[zone] >= 0
+        for number, name in enumerate(self.problem.zones):
+            if name in self.problem.contacts:
+                in_zones[number] = self._opposite(name)
         return in_zones
+
+    def _opposite(self, contact: str) -> BoolArray:
+        """Which elements (m,) are opposite to the second body of a contact."""
+        middles, of_edge = self.mesh.fractions[:, 1], self.mesh.edge
+        opposite = np.zeros(len(of_edge), bool)
+        for part in self.problem.opposite(contact):
+            if part.edge in self.mesh.edge_names:
+                own = of_edge == self.mesh.edge_names.index(part.edge)
+                opposite |= own & (middles > part.low) & (middles < part.high)
+        return opposite
 
     def elements_at(self, names: Sequence[str], edge: IntArray, fractions: Array) -> tuple[IntArray, Array]:
         """Element (k,) and local coordinate (k,) at fractions (k,) of edges, by their numbers (k,) in `names`."""

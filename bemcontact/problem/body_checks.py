@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.bodies import SEPARATOR, BodySpec, qualified
+from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.conditions import Loads
+from bemcontact.problem.pairing import blunt_corner
 from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.validation import KeyIssue
 from bemcontact.problem.wording import unknown_word
@@ -177,15 +179,25 @@ def opposite_issues(problem: Problem) -> Iterator[Issue]:
         surface, edges = problem.zones[name].surface, problem.edges_of(name)
         if not edges:
             yield Issue(path=path, message="no edge of the first side is turned to the second one and can see it")
-        elif getattr(surface, "elastic", False):
+        elif isinstance(surface, BodySurface):
             parts = problem.opposite(name)
             if not parts:
                 sides = " and ".join(", ".join(side) for side in contact.between)
-                yield Issue(
-                    path=path, message=f"{sides} are nowhere opposite to each other; look at their places and normals"
-                )
+                message = f"{sides} are nowhere opposite to each other; look at their places and normals"
+                yield Issue(path=path, message=message)
+            if not surface.elastic:
+                continue
             for part in parts:
-                follows.setdefault(surface.edges[part.onto].name, set()).add(part.edge)  # pyright: ignore[reportAttributeAccessIssue]
+                follows.setdefault(surface.edges[part.onto].name, set()).add(part.edge)
+            corners = (blunt_corner(problem.edge(edge), surface) for edge in edges)
+            if (corner := next((at for at in corners if at is not None), None)) is not None:
+                x, y = corner.tolist()
+                message = (
+                    f"the corner of '{surface.body}' at ({x:.5g}, {y:.5g}) is nearest to a part of the other side, "
+                    "across a gap: pairs of contact points need closest points of their own; exchange the two sides, "
+                    "round the corner, or draw the bodies where the corner touches"
+                )
+                yield Issue(path=path, message=message)
     if circle := _circle(follows):
         names = ", ".join(f"'{name}'" for name in circle)
         message = f"the meshes of {names} would follow each other in a circle; exchange the sides of one contact"

@@ -99,6 +99,15 @@ class BodySurface:
             normals[at], corner[at] = side[:, None] * offset[at] / away[number[at], at, None], True
         return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner)
 
+    def beside(self, feet: Feet) -> Array:
+        """Normals (k, 2, 2) out of the body on both sides of places that are corners, of others twice their own."""
+        normals = np.repeat(feet.normals[:, None], 2, axis=1)
+        for i in np.flatnonzero(feet.corner).tolist():
+            number, end = feet.edge[i], int(feet.fraction[i] > 0.5)
+            own = self.edges[number].normals(np.array([float(end)]))[0]
+            normals[i] = own, self._ends[0][number, end] - own
+        return normals
+
     def closest(self, points: Array) -> Closest:
         """Gap and normal at points (k, 2) [L]; the gap has the offset."""
         feet = self.feet(points)

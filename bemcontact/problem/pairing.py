@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, IntArray
-from bemcontact.problem.body_surface import BodySurface
+from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.problem.body_surface import BodySurface, Feet
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.visibility import turned_to
 
@@ -43,10 +43,24 @@ class OppositePart(NamedTuple):
 def opposite_parts(edges: Sequence[Edge], surface: BodySurface) -> list[OppositePart]:
     """Parts of edges opposite to a surface, in order.
 
-    A place is opposite to the surface if it is turned to it, and its closest point there is no corner: pairs of points
-    need closest points of their own.
+    A place is opposite to the surface if it is turned to it, and its closest point there is no corner, for pairs of
+    points need closest points of their own. The closest point may be a corner of a rigid surface both sides of which
+    the place is turned to.
     """
     return [part for edge in edges for part in _parts_of(edge, surface)]
+
+
+def blunt_corner(edge: Edge, surface: BodySurface) -> Array | None:
+    """A corner (2,) of a surface to both sides of which an edge is turned where the corner is nearest; None without."""
+    at = np.linspace(INSIDE, 1 - INSIDE, SAMPLES + 1)
+    feet = surface.feet(edge.points(at))
+    blunt = np.flatnonzero(feet.corner & _is_blunt(-edge.normals(at), feet, surface))
+    return feet.points[blunt[0]] if len(blunt) else None
+
+
+def _is_blunt(inward: Array, feet: Feet, surface: BodySurface) -> BoolArray:
+    """Whether places with normals (k, 2) into their body are turned to both sides of corners of a surface."""
+    return turned_to(inward[:, None], surface.beside(feet)).all(axis=1)
 
 
 def _parts_of(edge: Edge, surface: BodySurface) -> list[OppositePart]:
@@ -55,7 +69,10 @@ def _parts_of(edge: Edge, surface: BodySurface) -> list[OppositePart]:
     def opposite(at: Array) -> tuple[IntArray, Array]:
         feet = surface.feet(edge.points(at))
         turned = turned_to(-edge.normals(at), feet.normals)
-        return np.where(turned & ~feet.corner, feet.edge, -1), feet.fraction
+        one = ~feet.corner
+        if not surface.elastic and feet.corner.any():
+            one |= _is_blunt(-edge.normals(at), feet, surface)
+        return np.where(turned & one, feet.edge, -1), feet.fraction
 
     at = np.linspace(0.0, 1.0, SAMPLES + 1)
     onto, there = opposite(np.clip(at, INSIDE, 1 - INSIDE))  # on a corner of the surface two edges are nearest
