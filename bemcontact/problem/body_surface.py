@@ -123,7 +123,7 @@ class BodySurface:
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in self.closest(points))
         turns = abs(cross(inward[:, 0], inward[:, 1])) > CORNER
         near = ON_CORNER * max(np.ptp(part) for part in points.T)
-        for joint, own in self._joints:
+        for joint, own in self.joints:
             far = reach if cross(own[0], own[1]) < 0 else 0.0
             at = np.flatnonzero(np.hypot(*(points - joint).T) <= np.where(turns, np.maximum(far, near), near))
             turned = np.einsum("kai,si->kas", inward[at], own)
@@ -134,7 +134,7 @@ class BodySurface:
         return Faces(gap, normals, normals.copy())
 
     @cached_property
-    def _joints(self) -> list[tuple[Array, Array]]:
+    def joints(self) -> list[tuple[Array, Array]]:
         """Corners between two edges of the surface: point (2,) and both normals (2, 2) out of the body."""
         names, joints = {edge.name for edge in self.edges}, []
         for edge, _, after in _neighbors(self.loops):

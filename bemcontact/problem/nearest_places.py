@@ -6,10 +6,11 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.problem.body_surface import AnyShape, AnySurface
+from bemcontact.problem.body_surface import AnyShape, AnySurface, BodySurface
 from bemcontact.problem.curves import Curve, Edge
 from bemcontact.problem.surface_lines import Polyline
 from bemcontact.problem.validation import Point
+from bemcontact.problem.visibility import turned_to
 
 SAMPLES = 800
 """Samples of an edge."""
@@ -65,13 +66,27 @@ class SurfaceCorner(NamedTuple):
 
 
 def surface_corners(edge: Edge, surface: AnySurface, *, at_ends: bool = False) -> Iterator[SurfaceCorner]:
-    """Where an edge is nearest to a corner of a polyline, if that is inside or, if wanted, right at an end."""
+    """Where an edge is nearest to a corner of a polyline, if that is inside or, if wanted, right at an end.
+
+    Also where it is nearest to a corner of another body inside.
+    """
+    if isinstance(surface, BodySurface):
+        yield from _corners_of_body(edge, surface)
     if not isinstance(surface, Polyline):
         return
     for corner, turn in zip(surface.points[1:-1], surface.turns.tolist(), strict=True):
         fraction = edge.curve.fraction_at(corner)
         if AT_END < fraction < 1 - AT_END or (at_ends and _is_opposite(edge, round(fraction), corner)):
             yield SurfaceCorner(fraction, turn)
+
+
+def _corners_of_body(edge: Edge, surface: BodySurface) -> Iterator[SurfaceCorner]:
+    """Where an edge is nearest to a corner of a body, to both sides of which it is turned there."""
+    for corner, normals in surface.joints:
+        fraction = edge.curve.nearest(corner[None])
+        if AT_END < fraction[0] < 1 - AT_END and turned_to(-edge.normals(fraction), normals).all():
+            (x, y), (u, v) = normals
+            yield SurfaceCorner(float(fraction[0]), float(np.arctan2(x * v - y * u, x * u + y * v)))
 
 
 def _is_opposite(edge: Edge, end: int, corner: Point) -> bool:
