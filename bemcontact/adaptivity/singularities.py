@@ -292,9 +292,10 @@ def _corner_of_body(solved: Solved, run: ZoneRun, *, after: bool) -> bool:
 def _turns_of_surface(solved: Solved, run: ZoneRun) -> Iterator[tuple[float, float]]:
     """Position of each corner of the surface on a run, and how the surface turns away from the body there [rad]."""
     surface = solved.body.problem.zones[run.zone].surface
-    for edge, start in zip(run.edges, run.joints, strict=False):
+    for edge, start, ends in zip(run.edges, run.joints[:-1], run.breakpoints, strict=True):
         for fraction, turn in surface_corners(edge, surface, at_ends=True):
-            yield float(start + fraction * edge.length), turn
+            if ends[0] <= fraction <= ends[-1]:
+                yield float(start + (fraction - ends[0]) * edge.length), turn
 
 
 def elements_at(solved: Solved, run: ZoneRun, position: float) -> IntArray:
