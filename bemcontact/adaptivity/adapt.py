@@ -106,7 +106,7 @@ def stated(
     except SolverError as error:
         return _unsolved(problem, condensation, asked, str(error))
     try:
-        unknowns = 2 * own.degrees_of_freedom
+        unknowns = 2 * own.counted_unknowns
         if not halved and unknowns > MOST_UNKNOWNS:
             raise ProblemError(f"a mesh of half the elements' size has {unknowns} unknowns, more than {MOST_UNKNOWNS}")
         progress("every two elements in one" if halved else "every element in two")
@@ -163,7 +163,7 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
             coarse = search.fitted(
                 MOST_UNKNOWNS, lambda unknowns, start=start: progress(f"{start}, {unknowns} unknowns")
             )
-            if 2 * coarse.degrees_of_freedom > MOST_UNKNOWNS:
+            if 2 * coarse.counted_unknowns > MOST_UNKNOWNS:
                 reason = f"a finer mesh would have more than {MOST_UNKNOWNS} unknowns"
                 break
             progress(f"{start}, {2 * coarse.degrees_of_freedom} unknowns")

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from bemcontact.adaptivity.mesh_sizes import as_of_one
 from bemcontact.adaptivity.zone_runs import SAME, Stretch, ZoneRun, contact_stretches, zone_runs
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import footprint
@@ -133,6 +134,11 @@ class Solved:
     def degrees_of_freedom(self) -> int:
         """Number of unknowns, two for each node."""
         return self.mesh.degrees_of_freedom
+
+    @property
+    def counted_unknowns(self) -> int:
+        """Number of unknowns, of several bodies as `as_of_one` counts them."""
+        return as_of_one(part.mesh.degrees_of_freedom for part in self.mesh.parts)
 
     def force(self, answer: CaseAnswer, zone: int) -> float:
         """Force of a zone, the pressure summed up along it [p L]."""

@@ -9,7 +9,7 @@ from bemcontact.adaptivity.error_bars import SAFETY, near_singularities
 from bemcontact.adaptivity.fields import MeshDifference, Solved, most_of, norm_squared, penetrations, solved
 from bemcontact.adaptivity.first_sizes import SizedOutline
 from bemcontact.adaptivity.hidden_changes import hiding
-from bemcontact.adaptivity.mesh_sizes import ContactEnd, MeshSizes, useful_limits
+from bemcontact.adaptivity.mesh_sizes import ContactEnd, MeshSizes, as_of_one, useful_limits
 from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
 from bemcontact.adaptivity.sizes import OUTSIDE, Limit
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
@@ -73,7 +73,7 @@ class MeshSearch(MeshSizes):
             for number, limit in between:
                 self.sources[number].append(limit)
             mesh = self.mesh(1)
-            if 4 * sum(edge.elements or 0 for edge in mesh.edges) > most:
+            if as_of_one(4 * sum(edge.elements or 0 for edge in part.edges) for part in mesh.parts) > most:
                 return coarse
             coarse = solved(mesh)
         return coarse

@@ -1,6 +1,6 @@
 """The sizes that a mesh is made from: those of the geometry, of stated elements, and those that a search adds."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Self
@@ -15,9 +15,14 @@ from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.problem import Problem
 
 MOST_UNKNOWNS = 4000
-"""Largest number of unknowns of the finer mesh."""
+"""Largest number of unknowns of the finer mesh, of several bodies as `as_of_one` counts them."""
 UNKNOWNS = 4
 """Unknowns of an element: two displacements at each of two nodes, for the third is that of the next element."""
+
+
+def as_of_one(unknowns: Iterable[int]) -> int:
+    """Unknowns of one body whose equations take as long as those of several bodies, each with so many."""
+    return round(sum(count**3 for count in unknowns) ** (1 / 3))
 
 
 @dataclass(frozen=True, kw_only=True)
