@@ -66,7 +66,7 @@ class FacingStretch:
 
 def ends_of_parts(problem: Problem, loops: Sequence[Loop]) -> Iterator[tuple[int, list[float]]]:
     """Number of the loop and positions on it where a part ends that is opposite to another body, elastic or rigid."""
-    for contact in problem.contacts:
+    for contact in (*problem.contacts, *problem.bonded):
         for part in problem.opposite(contact):
             for number, loop in enumerate(loops):
                 if part.edge in loop.start_of:

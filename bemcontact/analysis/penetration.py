@@ -150,10 +150,10 @@ def _without_details(line: Array, length: float) -> Array:
 
 
 def _apart(problem: Problem) -> set[frozenset[str]]:
-    """Pairs of bodies between which no contact is stated."""
+    """Pairs of bodies between which neither contact nor a bond is stated."""
     names = [part.name for part in problem.parts]
     every = {frozenset((one, other)) for one in names for other in names if one != other}
-    return every - {frozenset(problem.sides_of(contact)) for contact in problem.contacts}
+    return every - {frozenset(problem.sides_of(name)) for name in (*problem.contacts, *problem.bonded)}
 
 
 def _crossing(

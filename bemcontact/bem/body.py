@@ -7,9 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from bemcontact.arrays import Array, nonnegative_residual
-from bemcontact.bem.contact_points import ContactPoints, contact_points
+from bemcontact.bem.bonds import BondedPoints
+from bemcontact.bem.contact_points import ContactPoints, UnitPressures, contact_points
 from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
-from bemcontact.bem.mesh import Mesh, build
+from bemcontact.bem.mesh import Mesh, MeshPart, build
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.rigid_motions import (
     BODY,
@@ -67,6 +68,8 @@ class Body:
     motions : of each elastic body, all rigid motions that the conditions leave free
     seen : motions of bodies and tools, and combinations, that move contact points along the rigid normals
     unseen : the other free motions, which change no gap
+    bonds : pairs of nodes of bonded bodies, which all of these motions leave together
+    apart : motions of elastic bodies that would not
     """
 
     problem: Problem
@@ -78,6 +81,21 @@ class Body:
     motions: tuple[RigidMotions, ...]
     seen: FreeMotions
     unseen: FreeMotions
+    bonds: BondedPoints
+    apart: FreeMotions
+
+    def unit_pressures(self, part: MeshPart) -> UnitPressures:
+        """Unit pressures of contact points and unit tractions of bonds on the mesh of one of the bodies."""
+        own = self.points.unit_pressures(part)
+        return self.bonds.added_to(own, part, len(self.points)) if len(self.bonds) else own
+
+    def all_changes(self, motions: FreeMotions) -> Array:
+        """Changes (n + b, k) of gaps and bonds by free motions."""
+        count = len(self.points) + len(self.bonds)
+        changes = np.zeros((count, len(motions)))
+        for number, part in enumerate(self.mesh.parts):
+            changes += motions.of_body(number).gap_changes(self.unit_pressures(part), part.mesh, count)
+        return changes
 
     @cached_property
     def shear_moduli(self) -> Array:
@@ -266,10 +284,11 @@ def body_of(problem: Problem) -> Body:
         for part in mesh.parts
     )
     names = tuple(f"the body '{part.name}'" for part in problem.parts) if problem.several else (BODY,)
-    seen, unseen = free_motions(points, motions, tools, names)
+    bonds = BondedPoints.of(problem, mesh, permanent.values)
+    seen, unseen, apart = free_motions(points, motions, tools, names, bonds)
     body = Body(
         problem=problem, mesh=mesh, outline=outline, points=points, loadings=(permanent, *cases), tools=tools,
-        motions=motions, seen=seen, unseen=unseen,
+        motions=motions, seen=seen, unseen=unseen, bonds=bonds, apart=apart,
     )  # fmt: skip
     if problem.case is not None or not problem.load_cases:
         ensure_held(body)

@@ -12,7 +12,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.bem.body import Body, body_of, ensure_held
-from bemcontact.bem.contact_points import ContactPoints
+from bemcontact.bem.bonds import Bond, eliminate
 from bemcontact.bem.loading import combined
 from bemcontact.bem.mesh import BoundaryState, MeshPart
 from bemcontact.bem.response import Response
@@ -41,7 +41,7 @@ class CondensedPart:
     response: Response
 
     def state(self, pressure: Array, factors: Array) -> Array:
-        """Solution of its equations for pressures (n,) [p] at all contact points and factors (1 + c,) of loadings."""
+        """Solution of its equations for pressures and bond tractions (n + b,) [p] and factors (1 + c,) of loadings."""
         own = pressure[self.system.points.number] / self.system.stress
         return self.response.combined(np.append(factors, own))
 
@@ -56,12 +56,14 @@ class Condensation:
     parts : the elastic bodies, each condensed by itself
     contact : CondensedContact
     gauge : Gauge
+    bond : what holds bonded bodies together, if there are any
     """
 
     body: Body
     parts: tuple[CondensedPart, ...]
     contact: CondensedContact
     gauge: Gauge
+    bond: Bond | None = None
 
     def acting(self, case: str | None = None) -> "Condensation":
         """The body under the load case or combination that acts, or another one; `ProblemError` as of `body_of`."""
@@ -118,7 +120,7 @@ class CondensedTogether:
         for part, motions in zip(self.parts, body.motions, strict=True):
             own = [*range(start, start + count), *range(loads, part.response.columns)]
             system = replace(
-                part.system, points=body.points.unit_pressures(part.mesh), motions=motions,
+                part.system, points=body.unit_pressures(part.mesh), motions=motions,
                 loadings=part.system.loadings[start : start + count],
             )  # fmt: skip
             parts.append(replace(part, system=system, response=part.response.of_columns(own)))
@@ -131,7 +133,7 @@ def condense_together(bodies: Sequence[Body]) -> CondensedTogether:
     loadings = [loading for body in bodies for loading in body.loadings]
     for stated, on_mesh, motions in zip(first.problem.parts, first.mesh.parts, first.motions, strict=True):
         system = System(
-            mesh=on_mesh.mesh, material=stated.material, points=first.points.unit_pressures(on_mesh), motions=motions,
+            mesh=on_mesh.mesh, material=stated.material, points=first.unit_pressures(on_mesh), motions=motions,
             loadings=[loading.of_part(on_mesh) for loading in loadings],
         )  # fmt: skip
         parts.append(CondensedPart(mesh=on_mesh, system=system, response=solve_system(system)))
@@ -158,9 +160,20 @@ def _notes(body: Body, parts: Sequence[CondensedPart]) -> tuple[str, ...]:
 def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
     """The condensed bodies, from the responses to their loadings and unit pressures."""
     points, tools, s = body.points, body.tools, len(body.loadings)
-    compliance, free_displacement = np.zeros((len(points), len(points))), np.zeros((len(points), s))
+    count, bond = len(points) + len(body.bonds), None
+    compliance, free_displacement = np.zeros((count, count)), np.zeros((count, s))
     for part in parts:
         _observe(part, compliance, free_displacement)
+    if len(body.bonds):
+        compliance, free_displacement, bond = eliminate(
+            compliance,
+            free_displacement,
+            body.all_changes(body.apart),
+            np.append(points.tributary, body.bonds.weights),
+            body.motion_load(body.apart),
+            body.apart.of_bodies.T,
+            len(points),
+        )
     R, load = body.seen_motion, body.seen_load
     own = np.any(body.seen.of_bodies, axis=1)
     gauge = fix_gauge(
@@ -212,7 +225,7 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
             factors=np.zeros(s - 1),
         ),
     )
-    return Condensation(body=body, parts=parts, contact=contact, gauge=gauge).acting()
+    return Condensation(body=body, parts=parts, contact=contact, gauge=gauge, bond=bond).acting()
 
 
 def _observe(part: CondensedPart, compliance: Array, free_displacement: Array) -> None:
@@ -263,20 +276,22 @@ def boundary_columns(condensation: Condensation) -> tuple[Array, Array]:
         for own, loading, column in zip_longest(z, system.loadings, number.tolist()):
             u, t = system.fields(own, loading)
             displacement[part.mesh.nodes, :, column], traction[part.mesh.elements, :, :, column] = u, t
-    for element, local, point, vectors in _pressed(body.points):
+    for element, local, point, vectors in _pressed(body):
         for axis in (0, 1):
             np.add.at(traction[:, :, axis], (element, local, loads + point), vectors[:, axis])
     return displacement, traction
 
 
-def _pressed(points: ContactPoints) -> Iterator[tuple[IntArray, IntArray, IntArray, Array]]:
+def _pressed(body: Body) -> Iterator[tuple[IntArray, IntArray, IntArray, Array]]:
     """(Element, local node) pairs (q,), points (q,) whose pressure they carry, and traction (q, 2) by a unit of it.
 
-    First those of the bodies that touch, then those of the other elastic bodies.
+    First those of the bodies that touch, then those of the other elastic bodies, then those of bonds.
     """
+    points, bonds = body.points, body.bonds
     other = points.opposite
     yield points.element, points.local, points.point, points.normals[points.point]
     yield other.element, other.local, points.point[other.share], other.traction
+    yield bonds.element, bonds.local, len(points) + bonds.direction, bonds.tractions
 
 
 def _boundary(
@@ -287,12 +302,19 @@ def _boundary(
     amplitudes = rigid_amplitudes.copy()
     amplitudes[: len(gauge.shift_load)] -= gauge.shift_load @ factors + gauge.shift_pressure @ pressure
     displacement, traction = np.zeros_like(body.mesh.nodes), np.zeros((*body.mesh.elements.shape, 2))
+    if condensation.bond is not None:
+        held, moved = (part[0] @ pressure + part[1] @ factors for part in condensation.bond)
+        pressure = np.append(pressure, held)
+        displacement += replace(
+            body.seen, coefficients=np.append(moved, np.zeros(3 * len(body.tools.names)))[None]
+        ).displacement(body.mesh)[..., 0]
     for part in condensation.parts:
         acting = combined(part.system.loadings, factors.tolist()) if factors.any() else None
         u, t = part.system.fields(part.state(pressure, factors), acting)
-        displacement[part.mesh.nodes], traction[part.mesh.elements] = u, t
+        displacement[part.mesh.nodes] += u
+        traction[part.mesh.elements] = t
     displacement += body.seen.displacement(body.mesh) @ amplitudes
-    for element, local, point, vectors in _pressed(body.points):
+    for element, local, point, vectors in _pressed(body):
         np.add.at(traction, (element, local), pressure[point, None] * vectors)
     return displacement[body.mesh.elements], traction
 
@@ -317,6 +339,10 @@ def _force_balance(condensation: Condensation, traction: Array) -> float:
 
 def _slack(condensation: Condensation, pressure: Array) -> float:
     """Border unknowns of the solution, over the sum of the magnitudes that each load and pressure contributes."""
+    if condensation.bond is not None:
+        pressure = np.append(
+            pressure, condensation.bond.traction[0] @ pressure + condensation.bond.traction[1] @ condensation.factors
+        )
     return max(_slack_of(part, pressure, condensation.factors) for part in condensation.parts)
 
 

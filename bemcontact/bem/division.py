@@ -57,7 +57,10 @@ class Matched(NamedTuple):
 def divided(problem: Problem) -> Division:
     """Divide all edges of a problem into its elements, each cut as its mesh says."""
     refine, edges = problem.mesh.refine, {edge.name: edge for edge in problem.edges}
-    matched, parts = [*matched_parts(problem)], [part for name in problem.contacts for part in problem.opposite(name)]
+    matched, parts = (
+        [*matched_parts(problem)],
+        [part for name in (*problem.contacts, *problem.bonded) for part in problem.opposite(name)],
+    )
     if not parts:
         return Division(fractions={name: _thirds(edge.breakpoints(refine)) for name, edge in edges.items()}, facing={})
     ends = {name: edge.breakpoints(1) for name, edge in edges.items()}
@@ -75,9 +78,9 @@ def divided(problem: Problem) -> Division:
 
 
 def matched_parts(problem: Problem) -> Iterator[Matched]:
-    """Opposite parts of all contacts of two elastic bodies."""
-    for contact in problem.contacts:
-        surface = problem.zones[contact].surface
+    """Opposite parts of all contacts of two elastic bodies, and of all bonds."""
+    for contact in (*problem.contacts, *problem.bonded):
+        surface = (problem.bonds if contact in problem.bonded else problem.zones)[contact].surface
         if isinstance(surface, BodySurface) and surface.elastic:
             for part in problem.opposite(contact):
                 yield Matched(contact, part, surface.edges[part.onto].name, surface)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, BoolArray
+from bemcontact.bem.bonds import BondedPoints, split_motions
 from bemcontact.bem.contact_points import ContactPoints, UnitPressures
 from bemcontact.bem.mesh import Mesh
 from bemcontact.problem.contact_zone import RigidTool, ToolAction
@@ -309,12 +310,17 @@ class FreeMotions:
 
 
 def free_motions(
-    points: ContactPoints, of_bodies: Sequence[RigidMotions], tools: PlacedTools, bodies: tuple[str, ...] = (BODY,)
-) -> tuple[FreeMotions, FreeMotions]:
+    points: ContactPoints,
+    of_bodies: Sequence[RigidMotions],
+    tools: PlacedTools,
+    bodies: tuple[str, ...],
+    bonds: BondedPoints,
+) -> tuple[FreeMotions, FreeMotions, FreeMotions]:
     """Separate the free motions of bodies and of tools into those that contact sees and those that it does not see.
 
     The seen motions have independent columns of R; those of bodies come first, then those of tools. In the unseen
-    motions no gap changes, or bodies and tools move together.
+    motions no gap changes, or bodies and tools move together. The last ones would move bonded bodies apart, as the
+    others do not.
     """
     t, first = len(tools.names), 3 * len(of_bodies)
     poles, radius = tools.poles(points), of_bodies[0].radius
@@ -337,6 +343,7 @@ def free_motions(
     for number, own in enumerate(of_bodies):
         held[row : row + len(own), 3 * number : 3 * number + 3] = own.coefficients
         row += len(own)
+    held, apart = split_motions(held, _at_bonds(bonds, of_bodies) @ held[:, :first].T, UNSEEN)
     seen, unseen = _split(basis, held)
     if tools.free.any():
         (body, lost), (loaded, idle) = (seen, unseen), _split(basis, np.eye(first + 3 * t)[first:][tools.free])
@@ -344,7 +351,23 @@ def free_motions(
         together = _null_vectors(basis @ both.T)
         apart = _null_vectors(together[: len(body)].T)
         seen, unseen = np.vstack([echelon(apart.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
-    return replace(every, coefficients=_counterclockwise(seen)), replace(every, coefficients=_counterclockwise(unseen))
+    of_seen, of_unseen = (replace(every, coefficients=_counterclockwise(own)) for own in (seen, unseen))
+    return of_seen, of_unseen, replace(every, coefficients=apart)
+
+
+def _at_bonds(bonds: BondedPoints, of_bodies: Sequence[RigidMotions]) -> Array:
+    """Changes (b, 3 b') of the distances of bonded nodes by unit motions of each body."""
+    rows, changes = np.arange(len(bonds)), np.zeros((len(bonds), 3 * len(of_bodies)))
+    if not len(bonds):
+        return changes
+    for number, (own, part) in enumerate(zip(of_bodies, bonds.mesh.parts, strict=True)):
+        every = replace(own, coefficients=np.eye(3))
+        has = np.zeros(len(bonds.mesh.nodes), bool)
+        has[part.nodes] = True
+        for nodes, sign in ((bonds.node, 1.0), (bonds.other, -1.0)):
+            moved = every.displacement(bonds.mesh.nodes[nodes])[rows, bonds.axis]
+            changes[:, 3 * number : 3 * number + 3] += np.where(has[nodes][:, None], sign * moved, 0.0)
+    return changes
 
 
 def _counterclockwise(motions: Array) -> Array:

@@ -110,16 +110,18 @@ def _two_sides(value: Any) -> Any:
     return value
 
 
+Sides = Annotated[
+    tuple[Names, Names], BeforeValidator(_two_sides), Field(json_schema_extra={"minItems": 2, "maxItems": 2})
+]
+"""The two sides of a contact or a bond."""
+
+
 class BodyContact(SpecModel):
     """Contact of two bodies without friction."""
 
     example: ClassVar[str] = "{between: [roller/under, rail/top]}"
 
-    between: Annotated[
-        tuple[Names, Names],
-        BeforeValidator(_two_sides),
-        Field(json_schema_extra={"minItems": 2, "maxItems": 2}),
-    ]
+    between: Sides
     """The two sides: a body, or an edge as BODY/EDGE, or a list of edges of one body. Contact points are nodes of the
     first side, and the mesh of the second side is fitted to them; a rigid body counts as the second side."""
     gap: Number = 0.0

@@ -26,6 +26,7 @@ from bemcontact.problem.bodies import (
     BodyName,
     BodySpec,
     Part,
+    Sides,
     named_loops,
     placed,
     with_boundary,
@@ -132,6 +133,8 @@ class Problem(SpecModel):
     """The bodies by name, if there are several. Their edges are called BODY/EDGE in contacts, zones and load cases."""
     contacts: dict[Name, BodyContact] = Field(default_factory=dict)
     """The contacts by name, each between two of the bodies."""
+    bonded: dict[Name, Sides] = Field(default_factory=dict)
+    """The bonded interfaces by name: two sides as of a contact, which coincide and move together."""
     conditions: dict[Name, Condition] = Field(default_factory=dict)
     """The conditions on edges, by edge name. An edge that is left out is free of traction."""
     loads: Loads = Loads()
@@ -165,6 +168,8 @@ class Problem(SpecModel):
     """The parts of edges that are opposite to another elastic body, of each contact; likewise."""
     _placed: dict[str, Boundary] = PrivateAttr(default_factory=dict)
     """The boundaries of copies; a copy with other elements has a boundary of its own."""
+    _bonds: dict[str, BodyZone] = PrivateAttr(default_factory=dict)
+    """Bonded interfaces by name; likewise."""
     _zones: dict[str, ContactZone | BodyZone] = PrivateAttr(default_factory=dict)
     """Contact zones and contacts by name; likewise."""
 
@@ -333,8 +338,8 @@ class Problem(SpecModel):
         return self._placed[body]
 
     def sides_of(self, contact: str) -> tuple[str, str]:
-        """Names of the two bodies of a contact."""
-        first, second = self.contacts[contact].between
+        """Names of the two bodies of a contact or a bond."""
+        first, second = self.bonded[contact] if contact in self.bonded else self.contacts[contact].between
         return _body_in(first), _body_in(second)
 
     def part_of(self, edge: str) -> str:
@@ -387,12 +392,21 @@ class Problem(SpecModel):
             return self.contact_zones
         if not self._zones:
             self._zones.update(self.contact_zones)
-            self._zones.update((name, self._zone_of(contact)) for name, contact in self.contacts.items())
+            self._zones.update(
+                (name, self._zone_of(contact.between, contact.gap)) for name, contact in self.contacts.items()
+            )
         return self._zones
 
-    def _zone_of(self, contact: BodyContact) -> BodyZone:
+    @property
+    def bonds(self) -> Mapping[str, BodyZone]:
+        """The bonded interfaces, each as a zone of the first body on the surface of the second one."""
+        if len(self._bonds) < len(self.bonded):
+            self._bonds.update((name, self._zone_of(sides, 0.0)) for name, sides in self.bonded.items())
+        return self._bonds
+
+    def _zone_of(self, between: tuple[Sequence[str], Sequence[str]], gap: float) -> BodyZone:
         """A contact between two bodies as a zone on the surface of the second one."""
-        first, second = contact.between
+        first, second = between
         if not self.is_elastic(_body_in(first)):
             first, second = second, first
         body = _body_in(second)
@@ -404,7 +418,7 @@ class Problem(SpecModel):
             for edge in loop
             if (edge.name in second or second == (body,)) and edge.name not in held
         )
-        surface = BodySurface(body=body, elastic=elastic, edges=touched, loops=loops, offset=contact.gap)
+        surface = BodySurface(body=body, elastic=elastic, edges=touched, loops=loops, offset=gap)
         edges = first
         if first == (own := _body_in(first),):
             lines = [edge for loop in named_loops(self.boundary_of(own), own) for edge in loop]
@@ -419,15 +433,18 @@ class Problem(SpecModel):
         return tuple(dict.fromkeys(surface.edges[part.onto].name for part in self.opposite(contact)))
 
     def _held_edges(self) -> set[str]:
-        """Names of the edges with a condition, in the problem or in a load case."""
-        return {*self.edge_conditions}.union(*(case.conditions for case in self.load_cases.values()))
+        """Names of the edges with a condition, in the problem or in a load case, and of bonded ones."""
+        bonded = {name for sides in self.bonded.values() for side in sides for name in side}
+        return {*self.edge_conditions, *bonded}.union(*(case.conditions for case in self.load_cases.values()))
 
     def opposite(self, contact: str) -> tuple[OppositePart, ...]:
-        """Parts of the edges of the first body that are opposite to the second elastic body of a contact."""
+        """Parts of the edges of the first body that are opposite to the second one of a contact, or of a bond."""
         if contact not in self._opposite:
-            zone, edges = self.zones[contact], {edge.name: edge for edge in self.edges}
-            assert isinstance(zone.surface, BodySurface)
-            parts = opposite_parts([edges[name] for name in self.edges_of(contact)], zone.surface)
+            edges, zone = {edge.name: edge for edge in self.edges}, self.bonds.get(contact, None)
+            names = self.edges_of(contact) if zone is None else zone.edges
+            surface = (zone or self.zones[contact]).surface
+            assert isinstance(surface, BodySurface)
+            parts = opposite_parts([edges[name] for name in names], surface)
             self._opposite[contact] = tuple(parts)
         return self._opposite[contact]
 
