@@ -3,12 +3,15 @@
 Tests run side by side, one on each core; what NumPy calls must not take the cores from one another.
 """
 
+import gc
 import os
+import sys
 
 for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(threads, "1")  # before the first import of NumPy
 
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the many processes that tests start compile each module once
+sys.dont_write_bytecode = False  # and the next run need not compile the tests again
 
 import pytest  # noqa: E402
 from hypothesis import settings  # noqa: E402
@@ -20,6 +23,17 @@ settings.load_profile("repeatable")
 
 SLOW = 10.0
 """Seconds of a test that should have the marker slow: twice the five of the marker, for a machine with other work."""
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """The thousands of tests stay to the end: no time is spent on a search for garbage among them, now or later."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.fixture(autouse=True, scope="session")

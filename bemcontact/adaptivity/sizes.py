@@ -1,6 +1,6 @@
 """Element sizes along the closed loops of the boundary, and the element ends that follow from them."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -100,14 +100,21 @@ class Loop:
         if not len(positions):
             return np.zeros(0)
         low, high, size = limits.T
-        offset = np.mod(positions[:, None] - low, self.length)  # from the first position on
+        offset = self._forwards(positions[:, None] - low)
         beyond = np.maximum(np.minimum(offset - (high - low), self.length - offset), 0.0)
         least = np.min(size + self.growth * beyond, axis=1)
         for layer in layers:
-            offset = np.mod(positions - layer.position, self.length)
+            offset = self._forwards(positions - layer.position)
             after = offset <= self.length / 2
             np.minimum(least, layer.at(np.where(after, offset, offset - self.length), self.growth), out=least)
         return least
+
+    def _forwards(self, offset: Array) -> Array:
+        """Distances forwards along the loop [L]: differences of positions modulo its length."""
+        length = self.length
+        if offset.min() >= -length and offset.max() < length:
+            return np.where(offset < 0, offset + length, offset)  # a tenth of the time of `mod`
+        return np.mod(offset, length)
 
     def without_idle(self, limits: Array) -> Array:
         """The limits (l, 3) without those that others make idle, the smallest first, of equal ones the first.
@@ -162,19 +169,26 @@ class Loop:
         marks : positions [L] at which elements end besides the joints
         """
         inside = np.mod([*marks], self.length)
+        corners = [self._corners(start, stop, inside) for start, stop in pairwise(self.joints)]
         ends: dict[str, tuple[float, ...]] = {}
-        for edge, start, stop in zip(self.edges, self.joints[:-1], self.joints[1:], strict=True):
-            same = SAME * (stop - start)
-            own = np.unique(inside[(inside > start + same) & (inside < stop - same)])
-            own = own[np.diff(own, prepend=start) > same]
-            ends[edge.name] = _apart((self._divided(start, stop, own, limits, layers) - start) / (stop - start))
+        for edge, own, sampled in zip(self.edges, corners, self._sampled(corners, limits, layers), strict=True):
+            ends[edge.name] = _apart((_divided(own, *sampled) - own[0]) / (own[-1] - own[0]))
         return ends
 
-    def _divided(self, start: float, stop: float, marks: Array, limits: Array, layers: Sequence[Layers]) -> Array:
-        """Positions of the element ends inside an edge."""
-        corners = np.concatenate([[start], marks, [stop]])
+    def _corners(self, start: float, stop: float, marks: Array) -> Array:
+        """Positions of the start of an edge, of the marks inside it, and of its end."""
+        same = SAME * (stop - start)
+        own = np.unique(marks[(marks > start + same) & (marks < stop - same)])
+        return np.concatenate([[start], own[np.diff(own, prepend=start) > same], [stop]])
+
+    def _sampled(
+        self, corners: Sequence[Array], limits: Array, layers: Sequence[Layers]
+    ) -> Iterator[tuple[Array, Array]]:
+        """Samples of each edge between its corners, with the sizes there; all edges at once, for few calls."""
         known = np.mod(np.append(limits[:, :2].ravel(), [layer.position for layer in layers]), self.length)
-        samples = np.unique([*corners, *known[(known > start) & (known < stop)]])
+        samples = np.concatenate(
+            [np.unique([*own, *known[(known > own[0]) & (known < own[-1])]]) for own in corners]
+        )  # the end of an edge and the start of the next are two samples at one place
         size = self.size_at(samples, limits, layers)
         for _ in range(60):
             step = np.diff(samples)
@@ -184,16 +198,22 @@ class Loop:
             middle = (samples[:-1] + samples[1:])[coarse] / 2
             at = np.flatnonzero(coarse) + 1
             samples, size = np.insert(samples, at, middle), np.insert(size, at, self.size_at(middle, limits, layers))
-        count = np.concatenate([[0.0], np.cumsum(np.diff(samples) * (1 / size[:-1] + 1 / size[1:]) / 2)])
-        at_corner = np.interp(corners, samples, count)
-        least = LEAST if len(corners) == 2 else 1
-        pieces = []
-        for number, (low, high) in enumerate(pairwise(at_corner)):
-            elements = max(ceil(high - low - ROUNDING), least)
-            inner = np.interp(np.linspace(low, high, elements + 1)[1:], count, samples)
-            inner[-1] = corners[number + 1]
-            pieces.append(inner)
-        return np.concatenate(pieces)[:-1]
+        between = np.searchsorted(samples, self.joints[1:-1], side="right") - 1
+        yield from zip(np.split(samples, between), np.split(size, between), strict=True)
+
+
+def _divided(corners: Array, samples: Array, size: Array) -> Array:
+    """Positions of the element ends inside an edge, in equal steps of ∫ds/h between its corners."""
+    count = np.concatenate([[0.0], np.cumsum(np.diff(samples) * (1 / size[:-1] + 1 / size[1:]) / 2)])
+    at_corner = np.interp(corners, samples, count)
+    least = LEAST if len(corners) == 2 else 1
+    pieces = []
+    for number, (low, high) in enumerate(pairwise(at_corner)):
+        elements = max(ceil(high - low - ROUNDING), least)
+        inner = np.interp(np.linspace(low, high, elements + 1)[1:], count, samples)
+        inner[-1] = corners[number + 1]
+        pieces.append(inner)
+    return np.concatenate(pieces)[:-1]
 
 
 def _apart(fractions: Array) -> tuple[float, ...]:

@@ -94,7 +94,7 @@ def placement(
     if change <= NO_CHANGE and not load.any():
         return None, overhangs
     there = {"initial_gap": contact.initial_gap + moved.change, "motion_load": contact.motion_load + load}
-    again = complementarity.solve(replace(contact, **there))
+    again = complementarity.solve(replace(contact, **there), near=pressed)
     misfit, turned = _moves_on(gaps, points, contact, solution, again, moved), ()
     if misfit is None and nearby is None:
         misfit, turned = _forces_changed(gaps, points, contact, solution, again, moved)

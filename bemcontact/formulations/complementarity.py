@@ -27,12 +27,15 @@ NAMED = 1e-9
 ACTIVE_SET, LEMKE = "primal-dual active set", "Lemke's method"
 
 
-def solve(contact: CondensedContact, options: SolveOptions | None = None) -> ContactSolution:
+def solve(
+    contact: CondensedContact, options: SolveOptions | None = None, *, near: BoolArray | None = None
+) -> ContactSolution:
     """Solve the complementarity problem (16)-(18) with (35)-(38) directly, without an objective.
 
     p is exactly zero off the contact set. With `Status.INFEASIBLE` p = 0, and the notes describe the motion in which
     the load pulls the body off. The history is `ScaledContact.residual` after each step of the active set, and as
     "infeasibility" the artificial variable z0 after each pivot of Lemke's method, which `max_iterations` limits.
+    The search starts from the contact set (n,) of a problem `near` to it, if that is known.
     `ProblemError` if another option is set.
     """
     options = options_of(FormulationName.COMPLEMENTARITY, options)
@@ -41,7 +44,7 @@ def solve(contact: CondensedContact, options: SolveOptions | None = None) -> Con
     if _escapes(scaled, loose):
         return _without_contact(contact, escape_words(contact, loose))
     carried = replace(scaled, motion_load=scaled.motion_load - loose)
-    search = find_state(carried, options.max_iterations)
+    search = find_state(carried, options.max_iterations, near)
     if search.status is Status.INFEASIBLE:
         note = "Lemke's method ended on a ray, and multipliers prove that no pressure satisfies the conditions"
         empty = _without_contact(contact, note)
@@ -156,10 +159,14 @@ class FoundState:
         return sum(len(trace.values) for trace in self.history)
 
 
-def find_state(scaled: ScaledContact, pivot_limit: int | None) -> FoundState:
-    """Primal-dual active set from two starts; if it cycles, Lemke's method, and the active set again from its end."""
+def find_state(scaled: ScaledContact, pivot_limit: int | None, near: BoolArray | None = None) -> FoundState:
+    """Primal-dual active set from two starts; if it cycles, Lemke's method, and the active set again from its end.
+
+    A set (n,) that is `near` is the first start.
+    """
     ends = list[ActiveSetEnd]()
-    for start in (first_active_set, resting_points) if scaled.motion_load.size else (first_active_set,):
+    starts = (first_active_set, resting_points) if scaled.motion_load.size else (first_active_set,)
+    for start in starts if near is None else (lambda _: near, *starts):
         ends.append(primal_dual(scaled, start(scaled)))
         if ends[-1].residual <= ACCEPTED:
             history = traces_in_turn(*(("residual", end.residuals) for end in ends))

@@ -137,9 +137,9 @@ PROOFS = {
 @pytest.mark.parametrize(
     ("proof", "problem", "count", "least"),
     [
-        ("points_that_may_touch", far_surfaces, 800, (50, 5)),
+        ("points_that_may_touch", far_surfaces, 400, (25, 3)),
         ("near_bound", several_surfaces_at_a_node, 150, (6, 1)),
-        ("reweighted_bound", nearly_definite, 1500, (100, 6)),
+        ("reweighted_bound", nearly_definite, 750, (50, 3)),
     ],
 )
 def test_each_proof_alone_proves_lonely_states_only(monkeypatch, proof, problem, count, least):

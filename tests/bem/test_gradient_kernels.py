@@ -1,5 +1,7 @@
 """Integrals of the displacement gradient against multiple precision."""
 
+from functools import cache
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -25,18 +27,16 @@ def exact(tau: np.ndarray) -> np.ndarray:
         near = [mp.re(r) + side * abs(mp.im(r)) * 4**j for r in roots for side in (-1, 0, 1) for j in range(18)]
         points = sorted({mp.mpf(-1), mp.mpf(1), *(x for x in near if -1 < x < 1)})
 
-        def integral(k: int, kernel) -> complex:
-            N = [mp.mpf(value) for value in reference_element.MONOMIALS[k]]
-            return complex(
-                mp.quad(lambda x: (N[0] + N[1] * x + N[2] * x * x) * kernel((c[0] * x + c[1]) * x + c[2]), points)
-            )
+        @cache  # the rule has the same points for all six integrals
+        def kernels_at(x):
+            t = (c[0] * x + c[1]) * x + c[2]
+            return 1 / t, t / mp.conj(t) ** 2
 
-        return np.array(
-            [
-                [integral(k, lambda t: 1 / t) for k in range(3)],
-                [integral(k, lambda t: t / mp.conj(t) ** 2) for k in range(3)],
-            ]
-        )
+        def integral(k: int, kernel: int) -> complex:
+            N = [mp.mpf(value) for value in reference_element.MONOMIALS[k]]
+            return complex(mp.quad(lambda x: (N[0] + N[1] * x + N[2] * x * x) * kernels_at(x)[kernel], points))
+
+        return np.array([[integral(k, kernel) for k in range(3)] for kernel in (0, 1)])
 
 
 @pytest.mark.parametrize("distance", [1e-9, 1e-4, 1e-2, 0.1, 0.3, 0.6])

@@ -8,6 +8,10 @@ from pathlib import Path
 import pages
 import pytest
 
+from bemcontact.analysis.follow import follow
+from bemcontact.parametric.parameter_path import ParameterPath
+from bemcontact.problem import Problem
+
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 EXTRAS = set(PROJECT["optional-dependencies"])
@@ -18,10 +22,23 @@ def name(page: Path) -> str:
     return str(page.relative_to(ROOT))
 
 
+PATHS: dict[tuple[object, ...], ParameterPath] = {}
+
+
+def followed_once(problem: Problem, key: str, to: float, start: float | None = None) -> ParameterPath:
+    """`follow`, but a path that two pages show is found once."""
+    asked = (problem.model_dump_json(), key, to, start)
+    if asked not in PATHS:
+        PATHS[asked] = follow(problem, key, to, start)
+    return PATHS[asked]
+
+
 @pytest.fixture(autouse=True)
 def settled(monkeypatch: pytest.MonkeyPatch):
     for variable, value in pages.SETTINGS.items():
         monkeypatch.setenv(variable, value)
+    for name in ("bemcontact.follow", "bemcontact.analysis.follow.follow"):
+        monkeypatch.setattr(name, followed_once)
 
 
 MANY_SOLUTIONS = {".docs/tutorials/loaded_tool.md", ".docs/how-to/paths.md", ".docs/validation/paper.md"}

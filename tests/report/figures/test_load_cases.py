@@ -1,5 +1,6 @@
 """Pictures of load cases side by side: bodies, fans, magnification and colors have one scale."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from itertools import combinations
@@ -50,11 +51,17 @@ def fans(axes: Axes) -> list[np.ndarray]:
     ]
 
 
+@cache
+def page_of(draw: Callable[[CaseResults], Figure], name: str) -> Figure:
+    """A page that several tests look at."""
+    return draw(solved(name))
+
+
 @pytest.mark.parametrize("name", MODELS)
 @pytest.mark.parametrize("draw", [figure_of_contacts, figure_of_stresses])
 def test_all_panels_have_equal_limits_and_sizes(name: str, draw):
     """So the undeformed body is drawn at one scale and one place; no fan is cut off."""
-    figure = draw(solved(name))
+    figure = page_of(draw, name)
     figure.draw_without_rendering()
     panels = figure.axes[: len(solved(name).results)]
     assert len({axes.axis() for axes in panels}) == 1
@@ -67,7 +74,7 @@ def test_all_panels_have_equal_limits_and_sizes(name: str, draw):
 
 def test_fans_are_as_long_as_their_pressures():
     """Block between a press and a table: the largest pressures are 150, 100, 200 and 150 N/mm² by statics."""
-    figure = figure_of_contacts(solved("body_between_two_tools"))
+    figure = page_of(figure_of_contacts, "body_between_two_tools")
     lengths = [max(np.ptp(corners[:, 1]) for corners in fans(axes)) for axes in figure.axes]
     displaced = 0.02 * max(lengths)  # the feet of a fan are displaced
     assert np.array(lengths) / lengths[2] == pytest.approx([0.75, 0.5, 1.0, 0.75], abs=displaced / lengths[2])
@@ -99,7 +106,7 @@ def test_stresses_have_one_panel_a_case_and_one_scale(name: str, measure: Stress
 def test_displacements_have_one_magnification(name: str):
     """It is the smallest that a case has alone, so that no body reaches far through a surface."""
     results = solved(name).results.values()
-    figure = figure_of_stresses(solved(name))
+    figure = page_of(figure_of_stresses, name)
     factor = factor_of(figure)
     assert factor == min(magnification([result]) for result in results)
     for axes, result in zip(figure.axes, results, strict=False):
@@ -142,7 +149,7 @@ def test_each_panel_marks_the_largest_stress_or_those_that_are_infinite():
 @pytest.mark.parametrize("name", MODELS)
 @pytest.mark.parametrize("draw", [figure_of_contacts, figure_of_stresses, figures.figure_of])
 def test_titles_and_labels_lie_in_the_figure_and_apart(name: str, draw):
-    figure = draw(solved(name))
+    figure = page_of(draw, name)
     figure.draw_without_rendering()
     page = figure.bbox.padded(1.0)
     titles = [axes._left_title for axes in figure.axes if axes.get_title(loc="left")]  # pyright: ignore

@@ -205,11 +205,17 @@ def test_color_of_the_title_is_that_of_the_worse_verdict():
     assert colors == ["#222222", "#8a5a00", "#d55e00"]
 
 
+@cache
+def drawn(name: str) -> tuple[analysis.Result, list[Axes]]:
+    """A shipped model, solved, and the axes of its page."""
+    result = analysis.solve(spec.load(MODELS / f"{name}.yaml"))
+    return result, figures.figure_of_result(result).axes
+
+
 @pytest.mark.parametrize("name", ["gallery/hertz_small", "gallery/flat_punch", "cylinder_on_plane"])
 def test_panels_show_a_small_contact_and_about_its_width_to_either_side(name: str):
     """At least a sixth of the axis is contact; the largest value that is drawn in the frame fills it."""
-    result = analysis.solve(spec.load(MODELS / f"{name}.yaml"))
-    axes = figures.figure_of_result(result).axes
+    result, axes = drawn(name)
     (pressure,) = [item for item in axes if item.get_ylabel().startswith("pressure")]
     (gap,) = [item for item in axes if item.get_ylabel().startswith("gap")]
     arcs = [s for item in result.footprint.intervals for s in (item.start_arc, item.end_arc)]
@@ -224,8 +230,7 @@ def test_panels_show_a_small_contact_and_about_its_width_to_either_side(name: st
     "name", ["gallery/hertz_small", "gallery/flat_punch", "cylinder_on_plane", "gallery/block_in_corner"]
 )
 def test_names_lie_in_the_frame_and_apart_from_each_other(name: str):
-    result = analysis.solve(spec.load(MODELS / f"{name}.yaml"))
-    axes = figures.figure_of_result(result).axes[0]
+    axes = drawn(name)[1][0]
     frame = axes.get_window_extent()
     boxes = [text.get_window_extent() for text in axes.texts]
     assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in boxes)
