@@ -10,7 +10,7 @@ import numpy as np
 from bemcontact.analysis.body_stress import BodyStress, ensure_in_body
 from bemcontact.analysis.largest_stress import largest_stresses
 from bemcontact.analysis.triangulated_body import triangulated_body
-from bemcontact.arrays import Array, BoolArray, real_array
+from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.bem.mesh import BoundaryState, Mesh, build
 from bemcontact.bem.stress_field import Located
 from bemcontact.contact.stress import EdgeStress, LargestStresses, Stress, StressPeak, TriangulatedBody
@@ -110,9 +110,9 @@ class StressOfBodies:
         """Displacement and stress on triangles that fill all bodies; points on their boundaries come first."""
         if len(self.bodies) == 1:
             return self.triangulated[0]
-        rims, counts = ([len(values(body)) for body in self.triangulated] for values in (_element, _points))
+        rims, counts = zip(*((len(body.element), len(body.points)) for body in self.triangulated), strict=True)
         first, inside = np.cumsum([0, *rims]), np.cumsum([sum(rims), *np.subtract(counts, rims)])
-        new = [
+        new: list[IntArray] = [
             np.append(first[i] + np.arange(rims[i]), inside[i] + np.arange(counts[i] - rims[i]))
             for i in range(len(counts))
         ]
@@ -148,15 +148,7 @@ class StressOfBodies:
         )
 
 
-def _points(body: TriangulatedBody) -> Array:
-    return body.points
-
-
-def _element(body: TriangulatedBody) -> Array:
-    return body.element
-
-
-def _owner(placed: Sequence[Located]) -> Array:
+def _owner(placed: Sequence[Located]) -> IntArray:
     """Number (k,) of the first body that has each point, inside rather than on its boundary."""
     inside, outside = (np.stack([getattr(at, name) for at in placed]) for name in ("inside", "outside"))
     return np.where(inside.any(axis=0), inside.argmax(axis=0), (~outside).argmax(axis=0))
@@ -164,17 +156,16 @@ def _owner(placed: Sequence[Located]) -> Array:
 
 def _on_both_sides(mesh: Mesh, pressed: BoolArray, infinite: Sequence[Pair]) -> tuple[BoolArray, Array]:
     """Which elements (m,) touch, those of the second bodies included, and places of infinite pressure on both sides."""
-    touching, places = pressed.copy(), [*map(tuple, np.reshape(infinite, (-1, 2)).tolist())]
+    touching, places = pressed.copy(), [np.reshape(np.array(infinite, float), (-1, 2))]
     for facing in mesh.facing.values():
         own = np.flatnonzero(facing >= 0)
         touching[facing[own[pressed[own]]]] = True
-        for place in list(places):
-            for local in (0, 2):
-                away = np.hypot(*(mesh.nodes[mesh.elements[own, local]] - place).T)
-                if away.size and away.min() <= SAME_PLACE * mesh.size:
-                    other = mesh.elements[facing[own[away.argmin()]], 2 - local]
-                    places.append(tuple(mesh.nodes[other].tolist()))
-    return touching, np.array(places).reshape(-1, 2)
+        for local in (0, 2):
+            at = mesh.nodes[mesh.elements[own, local]]
+            away = np.hypot(*np.moveaxis(at[:, None] - places[0], 2, 0))
+            near = (away <= SAME_PLACE * mesh.size).any(axis=1)
+            places.append(mesh.nodes[mesh.elements[facing[own[near]], 2 - local]])
+    return touching, np.concatenate(places)
 
 
 def _largest(peaks: Sequence[StressPeak | None]) -> StressPeak | None:

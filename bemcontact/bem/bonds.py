@@ -49,7 +49,7 @@ class BondedPoints:
         node, pair = np.unique(first, return_inverse=True)
         pair, share = pair.reshape(-1), np.repeat(np.arange(len(elements)), 3)
         own, opposite = (elements[share], local.ravel()), (across[share], 2 - local.ravel())
-        lengths = [np.bincount(pair, mesh.tributary[at], len(node)) for at in (own, opposite)]
+        lengths = [np.bincount(pair, mesh.tributary[at], len(node)).astype(float) for at in (own, opposite)]
         other = np.zeros(len(node), int)
         other[pair] = mesh.elements[opposite]
         held = values.displacement_given[node] & values.displacement_given[other]

@@ -60,7 +60,7 @@ def blunt_corner(edge: Edge, surface: BodySurface) -> Array | None:
 
 def _is_blunt(inward: Array, feet: Feet, surface: BodySurface) -> BoolArray:
     """Whether places with normals (k, 2) into their body are turned to both sides of corners of a surface."""
-    return turned_to(inward[:, None], surface.beside(feet)).all(axis=1)
+    return np.all(turned_to(inward[:, None], surface.beside(feet)), axis=1)
 
 
 def _parts_of(edge: Edge, surface: BodySurface) -> list[OppositePart]:

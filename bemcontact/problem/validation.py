@@ -273,13 +273,20 @@ def _unknown_key(cls: type[BaseModel], key: str) -> str:
     """Say that a mapping has no such key, and where the key belongs or which one was meant."""
     if isinstance(cls, type) and issubclass(cls, SpecModel) and key in cls.other_words:
         return f"unknown key '{key}'; {cls.other_words[key]}"
-    tops = [model for model in SpecModel.__subclasses__() if model.root]
+    tops = [model for model in _descendants(SpecModel) if model.root]
     places = [f"under {place}" if place else "at the top level" for top in tops for place in homes(top, key)]
     if 0 < len(places) <= FEW_HOMES:
         meant = near_by(key, cls.model_fields)
         here = f"did you mean '{meant}'? " if meant else ""
         return f"unknown key '{key}'; {here}'{key}' belongs {' or '.join(places)}"
     return unknown_word("key", key, cls.model_fields)
+
+
+def _descendants(model: type[SpecModel]) -> Iterator[type[SpecModel]]:
+    """All classes that are made from a class."""
+    for child in model.__subclasses__():
+        yield child
+        yield from _descendants(child)
 
 
 def left_out() -> Any:
