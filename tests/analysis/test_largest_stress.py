@@ -9,6 +9,7 @@ from indented_blocks import block, indented
 import bemcontact
 from bemcontact import ProblemError, Result
 from bemcontact.analysis.stress_bars import _on_mesh
+from bemcontact.contact.stress import NoPeak
 
 MODELS = Path(__file__).parents[2] / "models"
 
@@ -41,9 +42,9 @@ def test_half_plane_with_sheared_contact():
 def test_largest_shear_below_hertz(width: float, accuracy: float):
     """Hertz's within 0.1 % in value and 0.1 % of b in depth, if the normals of the circle are accounted for.
 
-    Pressure acts along them, and so has a part b/R x/b towards the middle, which changes the depth by 0.7 % at b/R = 0.03
-    and by 0.07 % at b/R = 0.003. The block is 1000 times as large as the contact: the pressure on its bottom is 0.08 % of
-    the peak.
+    Pressure acts along them, and so has a part b/R x/b towards the middle. It changes the depth by 0.7 % at b/R = 0.03,
+    and by 0.07 % at b/R = 0.003. The block is 1000 times as large as the contact: the pressure on its bottom is 0.08 %
+    of the peak.
     """
     result, b, peak = indented(width, accuracy)
     shear = result.largest_stresses().shear["foot"]
@@ -84,6 +85,7 @@ def test_singular_bodies():
     """Below a sharp punch shear grows up to its edge, and so it does at clamped corners: there is no largest stress."""
     punch = bemcontact.solve(bemcontact.load(MODELS / "gallery" / "flat_punch.yaml")).largest_stresses()
     assert punch.shear == {"punch": None}
+    assert punch.missing["shear below punch"] is NoPeak.TO_INFINITE
     assert punch.singular.tolist() == [[5, 0]]
     cantilever = bemcontact.load(MODELS / "cantilever_flat_surface.yaml").with_value("accuracy", 0.1)
     beam = bemcontact.solve(cantilever).largest_stresses()
@@ -100,6 +102,8 @@ def test_no_contact():
     result = bemcontact.solve(problem)
     largest = result.largest_stresses()
     assert largest.shear == {"lid": None}
+    assert largest.inside is None
+    assert largest.missing == {"shear below lid": NoPeak.NO_CONTACT, "von Mises, inside": NoPeak.TO_BOUNDARY}
     assert largest.boundary.value == pytest.approx(3 * np.sqrt(1 - 0.3 + 0.3**2), rel=1e-9)
     with pytest.raises(ProblemError, match="condensed"):
         bemcontact.solve(result.contact).largest_stresses()
