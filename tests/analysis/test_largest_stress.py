@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from indented_blocks import block, indented
+from scipy.spatial import KDTree
 
 import bemcontact
 from bemcontact import ProblemError, Result
@@ -146,3 +147,79 @@ def test_finer_mesh_has_the_same_maximum():
     own = result.largest_stresses().inside
     _, finer = _on_mesh(result.problem.refined(4), result.accuracy.infinite_places)
     assert finer.inside.value == pytest.approx(own.value, rel=own.bar)
+
+
+def plate(hole: tuple[float, float, float], radius: float, poisson_ratio: float) -> Result:
+    """A quarter of a plate 4.5 x 3.4 with a hole (x, y, radius), pressed on a circle."""
+    x, y, r = hole
+    corners = [("bottom", 0, 0), ("right", 4.5, 0), ("top", 4.5, 3.4), ("axis", 0, 3.4)]
+    return bemcontact.solve(bemcontact.Problem(
+        name="plate", material={"young_modulus": 1000, "poisson_ratio": poisson_ratio}, accuracy=0.02,
+        boundary={
+            "outer": [{"name": name, "start": place} for name, *place in corners],
+            "holes": [[{"name": "hole", "kind": "arc", "center": [x, y], "radius": r, "angles": [0, -360]}]],
+        },
+        conditions={"axis": {"displacement": {"x": 0}}, "top": {"pressure": 2}},
+        contact_zones={"foot": {"edges": "bottom", "surface": {
+            "kind": "circle", "center": [0, -radius], "radius": radius, "body": "outside",
+        }}},
+    ))  # fmt: skip
+
+
+def shear_maxima(result: Result, end: float) -> list[float]:
+    """Values of the maxima of shear below a contact up to x = `end`, from a grid that is refined around each of them.
+
+    Below is what is nearer to it than 1.41 times the distance from the boundary. Around a maximum shear is lower on
+    circles of half the depth and of 0.9 of it.
+    """
+    points, found = result.boundary.points, list[float]()
+    field = result._body_stress.field
+    rim = points[result.boundary.edge != result.boundary.edge_names.index("axis")]
+    fine = np.vstack([rim[:, 0] + t * (rim[:, 2] - rim[:, 0]) for t in np.linspace(0, 1, 33)])  # sides of the polygon
+    fine = KDTree(np.vstack([rim.reshape(-1, 2), fine]))
+
+    def shear(places: np.ndarray) -> np.ndarray:
+        places = np.column_stack([abs(places[:, 0]), places[:, 1]])
+        inside = field.locate(places).inside
+        values = np.full(len(places), -np.inf)
+        values[inside] = result.stress(places[inside]).max_shear
+        return values
+
+    x, y = np.meshgrid(np.linspace(1e-3, 2.2 * end, 45), np.geomspace(0.02 * end, 3 * end, 45), indexing="ij")
+    values = shear(np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
+    padded = np.pad(values, 1, constant_values=-np.inf)
+    padded[0] = padded[1]  # mirror image
+    around = np.max([padded[i : i + 45, j : j + 45] for i in range(3) for j in range(3) if (i, j) != (1, 1)], axis=0)
+    circle = np.exp(2j * np.pi * np.arange(24) / 24).view(float).reshape(-1, 2)
+    for i, j in np.argwhere(values >= around):
+        place, step = np.array([x[i, j], y[i, j]]), 0.1 * y[i, j]
+        for _ in range(60):
+            square = place + step * np.stack(np.meshgrid([0, -1, 1], [0, -1, 1]), axis=-1).reshape(-1, 2)
+            best = int(shear(square).argmax())
+            place, step = square[best], step if best else step / 2
+        depth, away = fine.query(place)[0], max(0.0, np.hypot(max(abs(place[0]) - end, 0), place[1]))
+        value = shear(place[None])[0]
+        if 0.01 * end < depth >= away / 2**0.5 and all(
+            shear(place + part * depth * circle).max() < value for part in (0.5, 0.9)
+        ):
+            found.append(float(value))
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("hole", "radius", "poisson_ratio"),
+    [((1.4, 1.8, 0.4), 13, 0.3), ((1.2, 1.0, 0.6), 30, 0.45), ((0.9, 0.9, 0.3), 60, 0.3), ((1.0, 1.2, 0.7), 6, 0.2)],
+)
+def test_dense_grid_has_no_larger_maximum(hole: tuple[float, float, float], radius: float, poisson_ratio: float):
+    """The largest maximum of shear below the contact is found, also beside its end; or the reason why there is none."""
+    result = plate(hole, radius, poisson_ratio)
+    largest = result.largest_stresses()
+    (x, _), (end, _) = result.footprint.intervals[0].start, result.footprint.intervals[0].end
+    maxima, peak = shear_maxima(result, max(abs(x), abs(end))), largest.shear["foot"]
+    if maxima:
+        assert peak is not None
+        assert peak.value == pytest.approx(max(maxima), rel=1e-4)
+    else:
+        assert peak is None
+        assert largest.missing["shear below foot"] is NoPeak.TO_BOUNDARY
