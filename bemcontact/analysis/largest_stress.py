@@ -2,11 +2,14 @@
 
 Starts are points that fill the body, and lie as close as the boundary elements there. From those that are larger than
 their neighbors, a search with smaller and smaller steps goes up to a maximum. A maximum inside has lower stress all
-around. On lines of symmetry the body goes on in its mirror image.
+around, up to nearly the boundary. On lines of symmetry the body goes on in its mirror image.
+
+A maximum is below a contact if it lies at most 45 degrees beside it: near the ends of a contact it often does.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple, Self
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -14,22 +17,33 @@ from scipy.spatial import KDTree
 from bemcontact.analysis.body_stress import BodyStress
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
-from bemcontact.contact.stress import LargestStresses, Stress, StressPeak, TriangulatedBody
+from bemcontact.contact.stress import (
+    INSIDE,
+    ON_BOUNDARY,
+    SHEAR_BELOW,
+    LargestStresses,
+    NoPeak,
+    Stress,
+    StressPeak,
+    TriangulatedBody,
+)
 
-RISE, SEARCHES = 0.3, 24
-"""Part of the largest stress at a point from which on a search begins at others, and the searches at a time."""
+SEARCHES, AGAIN = 24, 0.7
+"""Searches at a time, and the part of a maximum from which on other starts may lead to a larger one."""
 STEP, SETTLED, SHORTER, MOST_STEPS = 0.2, 1e-2, 0.3, 30
 """First step over the depth of the start, the last one over the first, their ratio, and the most steps."""
 SAMPLES = 65
 """Places on an element from which the depth of a point is measured first."""
-ALIKE = 1e-9
-"""Relative difference of distances that is round-off."""
 BESIDE_LINE = 1e-7
 """Least distance from a line of symmetry over the size of the body."""
+BESIDE, BESIDE_AT_START = 2**0.5, 1.7
+"""Distance from contact over that from the boundary up to which a maximum is below it, and a start."""
 SHALLOW = 0.2
 """Depth over the length of the element there up to which a maximum is one of the boundary."""
 AROUND = np.array([[x, y] for x in (0, -1, 1) for y in (0, -1, 1)], float)
 """A point and those around it, in steps."""
+LEVEL = 1e-9
+"""Relative difference of stresses that is round-off."""
 RINGS = np.outer([0.5, 0.9], np.exp(2j * np.pi * np.arange(16) / 16)).ravel().view(float).reshape(-1, 2)
 """Points around a maximum, over its depth, at which stress must be lower; beside an infinite stress it is not."""
 
@@ -43,115 +57,196 @@ def largest_stresses(body: BodyStress, whole: TriangulatedBody, pressed: BoolArr
     mirrors = np.zeros(len(mesh.elements), bool)
     for line in body.field.lines:
         mirrors |= line.elements
-    search = _Search(body=body, whole=whole, mirrors=mirrors)
+    missing: dict[str, NoPeak] = {}
+    samples = _Samples.of(body, whole)
+
+    def inside(label: str, below: BoolArray, surface: BoolArray, measure: Measure) -> StressPeak | None:
+        search = _Search(body=body, samples=samples, mirrors=mirrors, below=np.flatnonzero(below), measure=measure)
+        peak, why = search.largest(np.flatnonzero(surface))
+        missing.update({label: why} if why is not None else {})
+        return peak
+
     zones = {}
     for zone in problem.zones:
-        sides = (*problem.edges_of(zone), *problem.opposite_edges(zone))
-        edges = [mesh.edge_names.index(edge) for edge in sides if edge in mesh.edge_names]
-        if not edges:
+        sides = {*problem.edges_of(zone), *problem.opposite_edges(zone)}.intersection(mesh.edge_names)
+        if not sides:
             continue
-        own = np.flatnonzero(pressed & np.isin(mesh.edge, edges))
-        zones[zone] = search.largest(own, lambda stress: stress.max_shear, np.flatnonzero(np.isin(mesh.edge, edges)))
-    every = np.arange(len(mesh.elements))
-    free = [mesh.edge_names[i] for i in np.unique(mesh.edge[~search.mirrors])]
+        own = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in sides])
+        zones[zone] = inside(SHEAR_BELOW.format(zone), pressed & own, own, lambda stress: stress.max_shear)
+    within = inside(INSIDE, np.full(len(mesh.elements), True), ~mirrors, lambda stress: stress.von_mises)
+    free = [mesh.edge_names[i] for i in np.unique(mesh.edge[~mirrors])]
     peaks = ((edge, body.edge_peak(edge, von_mises=True)) for edge in free)
     found = [StressPeak(value=peak.value, point=peak.point, depth=0.0, edge=edge) for edge, peak in peaks if peak]
+    if not found:
+        missing[ON_BOUNDARY] = NoPeak.TO_INFINITE
     return LargestStresses(
         shear=zones,
-        inside=search.largest(every, lambda stress: stress.von_mises, np.flatnonzero(~search.mirrors)),
+        inside=within,
         boundary=max(found, key=lambda peak: peak.value, default=None),
         singular=mesh.nodes[np.flatnonzero(body.singular)],
+        missing=missing,
     )
+
+
+class _Samples(NamedTuple):
+    """Stress at points (k, 2) that fill the body, those on the boundary first.
+
+    Parameters
+    ----------
+    points : (k, 2) [L]
+    pairs : (e, 2) neighbors
+    stress : at the points
+    element : (b,) boundary element of each point on the boundary
+    """
+
+    points: Array
+    pairs: IntArray
+    stress: Stress
+    element: IntArray
+
+    @classmethod
+    def of(cls, body: BodyStress, whole: TriangulatedBody) -> Self:
+        """The corners of triangles, and the middles of those that do not touch the boundary.
+
+        A maximum that is hardly higher than a ridge beside it may lie between corners that fall towards the ridge.
+        """
+        inner = whole.triangles[(whole.triangles >= len(whole.element)).all(axis=1)]
+        middles = body.stress(whole.points[inner].mean(axis=1))
+        number = len(whole.points) + np.arange(len(inner))
+        sides = [whole.triangles[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 0))]
+        both = whole.stress, middles
+        stress = Stress(
+            points=np.vstack([part.points for part in both]),
+            components=np.vstack([part.components for part in both]),
+            zz=np.concatenate([part.zz for part in both]),
+            kind=np.concatenate([part.kind for part in both]),
+        )
+        return cls(
+            points=stress.points,
+            pairs=np.vstack([*sides, *(np.column_stack([number, inner[:, i]]) for i in range(3))]),
+            stress=stress,
+            element=whole.element,
+        )
+
+
+class _Ends(NamedTuple):
+    """Ends (k, 2) of searches, the values (k,) there, and whether all around is inside the body (k,)."""
+
+    points: Array
+    values: Array
+    inside: BoolArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Search:
-    """A search for maxima of stress inside a body.
+    """A search for the largest maximum of a stress inside a body.
 
     Parameters
     ----------
     body : BodyStress
-    whole : stress at points that fill the body
+    samples : stress at points that fill the body
     mirrors : (m,) whether an element is on a line of symmetry
+    below : elements below which the maximum is
+    measure : the stress
     """
 
     body: BodyStress
-    whole: TriangulatedBody
+    samples: _Samples
     mirrors: BoolArray
+    below: IntArray
+    measure: Measure
 
-    def largest(self, elements: IntArray, measure: Measure, surface: IntArray) -> StressPeak | None:
-        """The largest maximum inside that is found from points below some elements, with its depth below others."""
-        start, depth = self._starts(elements, measure)
+    def largest(self, surface: IntArray) -> tuple[StressPeak | None, NoPeak | None]:
+        """The largest maximum with its depth below the elements of a surface, or why there is none."""
+        if not len(self.below):
+            return None, NoPeak.NO_CONTACT
+        start, depth, values = self._starts()
+        peak: StressPeak | None = None
+        highest: _Ends | None = None
         for first in range(0, len(start), SEARCHES):
+            if peak is not None and values[first] < AGAIN * peak.value:
+                break
             some = slice(first, first + SEARCHES)
-            peak = self._highest(*self._climb(start[some], STEP * depth[some], measure), measure, surface)
-            if peak is not None:
-                return peak
-        return None
+            ends = self._climb(start[some], STEP * depth[some])
+            peak = self._highest(ends, surface, peak)
+            if highest is None or ends.values.max() > highest.values.max():
+                highest = ends
+        return peak, None if peak is not None else self._why(highest)
 
-    def _highest(
-        self, at: Array, value: Array, inside: BoolArray, measure: Measure, surface: IntArray
-    ) -> StressPeak | None:
-        """The largest of the ends of searches that is a maximum inside; the first three are of `_climb`."""
-        every = np.flatnonzero(~self.mirrors)
-        for i in np.argsort(-np.where(inside, value, -np.inf))[: int(inside.sum())]:
-            depth, element = self._distance(at[i], every)
-            ring = self._values(at[i] + depth * RINGS, measure)
-            if depth > SHALLOW * self.body.field.mesh.lengths[every[element]] and (ring < value[i]).all():
-                x, y = at[i].tolist()
-                return StressPeak(value=float(value[i]), point=(x, y), depth=self._distance(at[i], surface)[0])
-        return None
+    def _highest(self, ends: _Ends, surface: IntArray, peak: StressPeak | None) -> StressPeak | None:
+        """The largest of a peak and of those ends of searches that are maxima inside."""
+        every, least = np.flatnonzero(~self.mirrors), 0.0 if peak is None else peak.value
+        for i in np.argsort(-ends.values):
+            point, value = ends.points[i], float(ends.values[i])
+            if value <= least:
+                break
+            depth, element = self._distance(point, every)
+            shallow = depth <= SHALLOW * self.body.field.mesh.lengths[every[element]]
+            if not ends.inside[i] or shallow or self._distance(point, self.below)[0] > BESIDE * depth:
+                continue
+            if (self._values(point + depth * RINGS) < (1 - LEVEL) * value).all():
+                x, y = point.tolist()
+                return StressPeak(value=value, point=(x, y), depth=self._distance(point, surface)[0])
+        return peak
 
-    def _starts(self, elements: IntArray, measure: Measure) -> tuple[Array, Array]:
-        """Points (k, 2) below some elements that are larger than their neighbors, and their depths (k,).
+    def _why(self, ends: _Ends | None) -> NoPeak:
+        """Why no search has ended at a maximum, from where the highest has."""
+        if ends is None:
+            return NoPeak.TO_BOUNDARY
+        highest, mesh = ends.points[np.argmax(ends.values)], self.body.field.mesh
+        singular = np.flatnonzero(self.body.singular)
+        beside = np.maximum(mesh.lengths[singular], mesh.lengths[mesh.before[singular]])
+        near = np.hypot(*(mesh.nodes[singular] - highest).T) <= beside
+        return NoPeak.TO_INFINITE if near.any() else NoPeak.TO_BOUNDARY
 
-        The largest is the first. A point as near to another element too is below both.
-        """
-        whole, rim, mesh = self.whole, len(self.whole.element), self.body.field.mesh
-        outer = np.append(~self.mirrors[whole.element], np.zeros(len(whole.points) - rim, bool))
-        values = np.where(outer, -np.inf, np.nan_to_num(measure(whole.stress), nan=-np.inf))
+    def _starts(self) -> tuple[Array, Array, Array]:
+        """Points (k, 2) that are larger than their neighbors, the largest first, their depths and values (k,)."""
+        points, pairs, stress, element = self.samples
+        outer = np.append(~self.mirrors[element], np.zeros(len(points) - len(element), bool))
+        values = np.where(outer, -np.inf, np.nan_to_num(self.measure(stress), nan=-np.inf))
         around = np.full(len(values), -np.inf)
-        for one, other in ((0, 1), (1, 2), (2, 0)):
-            ends = whole.triangles[:, one], whole.triangles[:, other]
-            np.maximum.at(around, ends[0], values[ends[1]])
-            np.maximum.at(around, ends[1], values[ends[0]])
-        sides = np.flatnonzero(~self.mirrors[whole.element])
-        own = np.vstack([whole.points[:rim][np.isin(whole.element, elements)], mesh.nodes[mesh.elements[elements, 2]]])
-        depth, away = (KDTree(points).query(whole.points)[0] for points in (whole.points[sides], own))
-        below = away <= (1 + ALIKE) * depth
-        start = np.flatnonzero(below & (values >= around) & np.isfinite(values) & (depth > 0))
-        start = start[values[start] > RISE * values[start].max(initial=0.0)]
+        for one, other in (pairs.T, pairs[:, ::-1].T):
+            np.maximum.at(around, one, values[other])
+        mesh, on = self.body.field.mesh, points[: len(element)]
+        own = np.vstack([on[np.isin(element, self.below)], mesh.nodes[mesh.elements[self.below, 2]]])
+        depth, away = (KDTree(places).query(points)[0] for places in (on[~self.mirrors[element]], own))
+        start = np.flatnonzero(
+            (away <= BESIDE_AT_START * depth) & (values >= around) & np.isfinite(values) & (depth > 0)
+        )
         start = start[np.argsort(-values[start])]
-        return whole.points[start], depth[start]
+        return points[start], depth[start], values[start]
 
-    def _climb(self, points: Array, step: Array, measure: Measure) -> tuple[Array, Array, BoolArray]:
-        """Go up from points (k, 2); the last ones, their values (k,), and whether all around is inside the body.
+    def _climb(self, points: Array, step: Array) -> _Ends:
+        """Go up from points (k, 2) with first steps (k,).
 
         At a point that is larger than those around it, the parabola through them gives the next one.
         """
-        least, rows = SETTLED * step, np.arange(len(points))
+        points, step, least = points.copy(), step.copy(), SETTLED * step
         value, inside = np.zeros(len(points)), np.zeros(len(points), bool)
+        live = np.arange(len(points))
         for _ in range(MOST_STEPS):
-            around = points[:, None] + step[:, None, None] * AROUND
-            values = self._values(around.reshape(-1, 2), measure).reshape(len(points), -1)
-            best = values.argmax(axis=1)
-            points, value = around[rows, best], values[rows, best]
-            inside = (best == 0) & np.isfinite(values).all(axis=1)
-            if ((step <= least) & (best == 0)).all():
+            around = points[live, None] + step[live, None, None] * AROUND
+            values = self._values(around.reshape(-1, 2)).reshape(len(live), -1)
+            best, rows = values.argmax(axis=1), np.arange(len(live))
+            points[live], value[live] = around[rows, best], values[rows, best]
+            inside[live] = (best == 0) & np.isfinite(values).all(axis=1)
+            at_top = (best == 0) & (step[live] <= least[live])
+            top = np.flatnonzero(inside[live])
+            further = points[live[top]] + step[live[top], None] * _parabola(values[top])
+            gained = self._values(further)
+            better = gained > value[live[top]]
+            points[live[top[better]]], value[live[top[better]]] = further[better], gained[better]
+            step[live] = np.where(best == 0, np.maximum(step[live] * SHORTER, least[live]), step[live])
+            live = live[~at_top]
+            if not len(live):
                 break
-            top = np.flatnonzero(inside)
-            further = points[top] + step[top, None] * _parabola(values[top])
-            gained = self._values(further, measure)
-            better = gained > value[top]
-            points[top[better]], value[top[better]] = further[better], gained[better]
-            step = np.where(best == 0, np.maximum(step * SHORTER, least), step)
-        return self._mirrored(points), value, inside
+        return _Ends(self._mirrored(points), value, inside)
 
-    def _values(self, points: Array, measure: Measure) -> Array:
+    def _values(self, points: Array) -> Array:
         """Values (k,) at points (k, 2) inside the body or its mirror images; minus infinity outside."""
         at = self.body.field.locate(self._mirrored(points))
         there = at.inside | (~at.outside & self.mirrors[at.element])
-        return np.where(there, np.nan_to_num(measure(self.body.at(at)), nan=-np.inf), -np.inf)
+        return np.where(there, np.nan_to_num(self.measure(self.body.at(at)), nan=-np.inf), -np.inf)
 
     def _mirrored(self, points: Array) -> Array:
         """Points (k, 2), those beyond lines of symmetry in their mirror image, and none on such a line.

@@ -13,7 +13,16 @@ from bemcontact.analysis.triangulated_body import triangulated_body
 from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.bem.mesh import BoundaryState, Mesh, build
 from bemcontact.bem.stress_field import Located
-from bemcontact.contact.stress import EdgeStress, LargestStresses, Stress, StressPeak, TriangulatedBody
+from bemcontact.contact.stress import (
+    INSIDE,
+    ON_BOUNDARY,
+    SHEAR_BELOW,
+    EdgeStress,
+    LargestStresses,
+    Stress,
+    StressPeak,
+    TriangulatedBody,
+)
 from bemcontact.errors import ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.wording import unknown_word
@@ -140,11 +149,16 @@ class StressOfBodies:
             for body, whole, pressed in zip(self.bodies, self.triangulated, self.pressed, strict=True)
         ]
         zones = list(dict.fromkeys(zone for item in each for zone in item.shear))
+        shear = {zone: _largest([item.shear.get(zone) for item in each]) for zone in zones}
+        inside, boundary = _largest([item.inside for item in each]), _largest([item.boundary for item in each])
+        found = {SHEAR_BELOW.format(zone): peak for zone, peak in shear.items()}
+        found |= {INSIDE: inside, ON_BOUNDARY: boundary}
         return LargestStresses(
-            shear={zone: _largest([item.shear.get(zone) for item in each]) for zone in zones},
-            inside=_largest([item.inside for item in each]),
-            boundary=_largest([item.boundary for item in each]),
+            shear=shear,
+            inside=inside,
+            boundary=boundary,
             singular=np.concatenate([item.singular for item in each]),
+            missing={label: why for item in each for label, why in item.missing.items() if found[label] is None},
         )
 
 

@@ -178,7 +178,7 @@ class Interior:
 
 
 def _prescribed(fields: BoundaryFields, line: SymmetryLine) -> BoundaryFields:
-    """The fields with the traction along a line of symmetry and the displacement across it alone: both are prescribed."""
+    """The fields with no more on a line of symmetry than is prescribed: traction along it, displacement across it."""
     P, D = fields.P.copy(), fields.D.copy()
     P[line.elements], D[line.elements] = (
         (1j * P[line.elements].imag, D[line.elements].real)

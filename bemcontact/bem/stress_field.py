@@ -161,10 +161,8 @@ class StressField:
             own = np.flatnonzero(line.elements[element] & ~corner)
             beside = points[own].copy()
             beside[:, line.axis] = line.place - line.outward * ON_BOUNDARY * self.mesh.size
-            for part, inside in zip(
-                gradient, self.interior.gradient(self.interior.z(beside), self.fields), strict=True
-            ):
-                part[own] = inside
+            inside = self.interior.gradient(self.interior.z(beside), self.fields)
+            gradient.a[own], gradient.b[own] = inside.a, inside.b
         return gradient.stress(self.material) + self._volume_stress(points)
 
     def _volume_stress(self, points: Array) -> Array:

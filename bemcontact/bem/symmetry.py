@@ -1,8 +1,8 @@
 """Lines of symmetry: straight edges that are held across and may slide along, at which the body goes on as its image.
 
-On such a line the displacement across and the traction along are prescribed. The stress inside follows from them and from
-the rest of the boundary with its image. Displacement along the line and traction across it, which are computed and have
-errors, cancel.
+On such a line the displacement across and the traction along are prescribed. The stress inside follows from them and
+from the rest of the boundary with its image. Displacement along the line and traction across it, which are computed and
+have errors, cancel.
 """
 
 from typing import NamedTuple

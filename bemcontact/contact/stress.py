@@ -155,19 +155,32 @@ class StressPeak(WithHints):
     """Name of the body, if there are several."""
 
 
+class NoPeak(StrEnum):
+    """Why there is no largest stress."""
+
+    NO_CONTACT = "the zone does not touch"
+    TO_BOUNDARY = "stress is at least as large up to the boundary"
+    TO_INFINITE = "stress grows up to a place where it is infinite"
+
+
+SHEAR_BELOW, INSIDE, ON_BOUNDARY = "shear below {}", "von Mises, inside", "von Mises, on the boundary"
+"""What the largest stresses are of; the first with the name of a zone."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LargestStresses(WithHints):
     """The largest stresses of a body."""
 
     shear: dict[str, StressPeak | None]
-    """Largest shear stress below the contact of each zone, at a maximum inside the body; None if there is none: without
-    contact, or if it grows up to the boundary."""
+    """Largest shear stress below the contact of each zone, at a maximum inside the body; None if there is none."""
     inside: StressPeak | None
     """Largest equivalent stress of von Mises at a maximum inside the body or on a line of symmetry; None if there is
     none."""
     boundary: StressPeak | None
     """Largest equivalent stress of von Mises along the edges, but for lines of symmetry, and for edges along which it
     grows up to an infinite one."""
+    missing: dict[str, NoPeak]
+    """Why there is no largest stress, by `SHEAR_BELOW` with the name of a zone, `INSIDE` and `ON_BOUNDARY`."""
     singular: Array
     """Places (s, 2) [L] where stress is infinite: the body has no largest stress if there are any."""
 

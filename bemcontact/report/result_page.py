@@ -7,7 +7,7 @@ from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.contender import OUTCOMES
-from bemcontact.contact.stress import StressPeak
+from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, SHEAR_BELOW, StressPeak
 from bemcontact.options import StressMeasure
 from bemcontact.problem import Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, bars_of, mesh_in_short, with_bar
@@ -120,11 +120,13 @@ def _stresses(result: Result, units: Units) -> Iterator[tuple[str, str, str]]:
     for zone, peak in largest.shear.items():
         if peak is not None:
             depth = with_unit(number(peak.depth), units.length)
-            yield f"shear below {zone}", _stress(peak, units), f"{_at(peak, units, size)}, {depth} deep"
+            yield SHEAR_BELOW.format(zone), _stress(peak, units), f"{_at(peak, units, size)}, {depth} deep"
     if largest.inside is not None:
-        yield "von Mises, inside", _stress(largest.inside, units), _at(largest.inside, units, size)
+        yield INSIDE, _stress(largest.inside, units), _at(largest.inside, units, size)
     if (peak := largest.boundary) is not None:
-        yield "von Mises, on the boundary", _stress(peak, units), f"{_at(peak, units, size)} on {peak.edge}"
+        yield ON_BOUNDARY, _stress(peak, units), f"{_at(peak, units, size)} on {peak.edge}"
+    for label, why in largest.missing.items():
+        yield label, "no largest", why
     if len(largest.singular):
         places = [vector((x, y), scale=size) for x, y in largest.singular[:MOST_PLACES].tolist()]
         more = len(largest.singular) - len(places)

@@ -11,6 +11,7 @@ import numpy as np
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import ErrorBar
+from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, SHEAR_BELOW
 from bemcontact.problem import Units
 from bemcontact.report.bars import NOTHING, JsonObject, bars_of, unit_of_bar, with_bar, without_digits_beyond
 from bemcontact.report.facts import (
@@ -32,7 +33,7 @@ POINT_COLUMNS = ("case", "zone", "x", "y", "normal_x", "normal_y", "arc", "press
 """Columns of points.csv."""
 STRESS_COLUMNS = ("case", "edge", "x", "y", "arc", "hoop", "pressure", "shear", "von_mises")
 """Columns of stress.csv."""
-LARGEST_COLUMNS = ("case", "stress", "of", "value", "error", "x", "y", "depth", "edge")
+LARGEST_COLUMNS = ("case", "stress", "of", "value", "error", "x", "y", "depth", "edge", "none")
 """Columns of largest_stresses.csv."""
 
 
@@ -173,7 +174,8 @@ def _stress_lines(case: str, result: Result) -> Iterator[list[Any]]:
 def largest_stresses_csv(results: Result | CaseResults) -> str:
     """Write a line for each largest stress of each load case, and for each place where stress is infinite.
 
-    The error is absolute; empty where it is not known. Where stress is infinite there is no value.
+    The error is absolute; empty where it is not known. Where stress is infinite there is no value. If there is no
+    largest stress, the last column says why.
     """
     lines = (_largest_lines(case, result) for case, result in by_case(results).items())
     return _written(LARGEST_COLUMNS, chain.from_iterable(lines))
@@ -182,14 +184,16 @@ def largest_stresses_csv(results: Result | CaseResults) -> str:
 def _largest_lines(case: str, result: Result) -> Iterator[list[Any]]:
     """The lines of a result in `largest_stresses_csv`."""
     largest = result.largest_stresses()
-    peaks = [("max_shear", zone, peak) for zone, peak in largest.shear.items()]
-    peaks += [("von_mises", "inside", largest.inside), ("von_mises", "boundary", largest.boundary)]
-    for stress, of, peak in peaks:
-        if peak is not None:
+    peaks = [("max_shear", zone, peak, SHEAR_BELOW.format(zone)) for zone, peak in largest.shear.items()]
+    peaks += [("von_mises", "inside", largest.inside, INSIDE), ("von_mises", "boundary", largest.boundary, ON_BOUNDARY)]
+    for stress, of, peak, label in peaks:
+        if peak is None:
+            yield [case, stress, of, *[""] * 6, str(largest.missing[label])]
+        else:
             error = "" if peak.bar is None else peak.bar * peak.value
-            yield [case, stress, of, peak.value, error, *peak.point, peak.depth, peak.edge or ""]
+            yield [case, stress, of, peak.value, error, *peak.point, peak.depth, peak.edge or "", ""]
     for x, y in largest.singular.tolist():
-        yield [case, "von_mises", "infinite", "", "", x, y, "", ""]
+        yield [case, "von_mises", "infinite", "", "", x, y, "", "", ""]
 
 
 def tables_of(results: Result | CaseResults) -> Mapping[str, str]:

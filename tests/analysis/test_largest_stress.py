@@ -5,10 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from indented_blocks import block, indented
+from scipy.spatial import KDTree
 
 import bemcontact
 from bemcontact import ProblemError, Result
 from bemcontact.analysis.stress_bars import _on_mesh
+from bemcontact.contact.stress import NoPeak
 
 MODELS = Path(__file__).parents[2] / "models"
 
@@ -41,9 +43,9 @@ def test_half_plane_with_sheared_contact():
 def test_largest_shear_below_hertz(width: float, accuracy: float):
     """Hertz's within 0.1 % in value and 0.1 % of b in depth, if the normals of the circle are accounted for.
 
-    Pressure acts along them, and so has a part b/R x/b towards the middle, which changes the depth by 0.7 % at b/R = 0.03
-    and by 0.07 % at b/R = 0.003. The block is 1000 times as large as the contact: the pressure on its bottom is 0.08 % of
-    the peak.
+    Pressure acts along them, and so has a part b/R x/b towards the middle. It changes the depth by 0.7 % at b/R = 0.03,
+    and by 0.07 % at b/R = 0.003. The block is 1000 times as large as the contact: the pressure on its bottom is 0.08 %
+    of the peak.
     """
     result, b, peak = indented(width, accuracy)
     shear = result.largest_stresses().shear["foot"]
@@ -84,6 +86,7 @@ def test_singular_bodies():
     """Below a sharp punch shear grows up to its edge, and so it does at clamped corners: there is no largest stress."""
     punch = bemcontact.solve(bemcontact.load(MODELS / "gallery" / "flat_punch.yaml")).largest_stresses()
     assert punch.shear == {"punch": None}
+    assert punch.missing["shear below punch"] is NoPeak.TO_INFINITE
     assert punch.singular.tolist() == [[5, 0]]
     cantilever = bemcontact.load(MODELS / "cantilever_flat_surface.yaml").with_value("accuracy", 0.1)
     beam = bemcontact.solve(cantilever).largest_stresses()
@@ -100,6 +103,8 @@ def test_no_contact():
     result = bemcontact.solve(problem)
     largest = result.largest_stresses()
     assert largest.shear == {"lid": None}
+    assert largest.inside is None
+    assert largest.missing == {"shear below lid": NoPeak.NO_CONTACT, "von Mises, inside": NoPeak.TO_BOUNDARY}
     assert largest.boundary.value == pytest.approx(3 * np.sqrt(1 - 0.3 + 0.3**2), rel=1e-9)
     with pytest.raises(ProblemError, match="condensed"):
         bemcontact.solve(result.contact).largest_stresses()
@@ -142,3 +147,79 @@ def test_finer_mesh_has_the_same_maximum():
     own = result.largest_stresses().inside
     finer = _on_mesh(result.problem.refined(4), result.accuracy.infinite_places).largest
     assert finer.inside.value == pytest.approx(own.value, rel=own.bar)
+
+
+def plate(hole: tuple[float, float, float], radius: float, poisson_ratio: float) -> Result:
+    """A quarter of a plate 4.5 x 3.4 with a hole (x, y, radius), pressed on a circle."""
+    x, y, r = hole
+    corners = [("bottom", 0, 0), ("right", 4.5, 0), ("top", 4.5, 3.4), ("axis", 0, 3.4)]
+    return bemcontact.solve(bemcontact.Problem(
+        name="plate", material={"young_modulus": 1000, "poisson_ratio": poisson_ratio}, accuracy=0.02,
+        boundary={
+            "outer": [{"name": name, "start": place} for name, *place in corners],
+            "holes": [[{"name": "hole", "kind": "arc", "center": [x, y], "radius": r, "angles": [0, -360]}]],
+        },
+        conditions={"axis": {"displacement": {"x": 0}}, "top": {"pressure": 2}},
+        contact_zones={"foot": {"edges": "bottom", "surface": {
+            "kind": "circle", "center": [0, -radius], "radius": radius, "body": "outside",
+        }}},
+    ))  # fmt: skip
+
+
+def shear_maxima(result: Result, end: float) -> list[float]:
+    """Values of the maxima of shear below a contact up to x = `end`, from a grid that is refined around each of them.
+
+    Below is what is nearer to it than 1.41 times the distance from the boundary. Around a maximum shear is lower on
+    circles of half the depth and of 0.9 of it.
+    """
+    points, found = result.boundary.points, list[float]()
+    field = result._stresses.bodies[0].field
+    rim = points[result.boundary.edge != result.boundary.edge_names.index("axis")]
+    fine = np.vstack([rim[:, 0] + t * (rim[:, 2] - rim[:, 0]) for t in np.linspace(0, 1, 33)])  # sides of the polygon
+    fine = KDTree(np.vstack([rim.reshape(-1, 2), fine]))
+
+    def shear(places: np.ndarray) -> np.ndarray:
+        places = np.column_stack([abs(places[:, 0]), places[:, 1]])
+        inside = field.locate(places).inside
+        values = np.full(len(places), -np.inf)
+        values[inside] = result.stress(places[inside]).max_shear
+        return values
+
+    x, y = np.meshgrid(np.linspace(1e-3, 2.2 * end, 45), np.geomspace(0.02 * end, 3 * end, 45), indexing="ij")
+    values = shear(np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
+    padded = np.pad(values, 1, constant_values=-np.inf)
+    padded[0] = padded[1]  # mirror image
+    around = np.max([padded[i : i + 45, j : j + 45] for i in range(3) for j in range(3) if (i, j) != (1, 1)], axis=0)
+    circle = np.exp(2j * np.pi * np.arange(24) / 24).view(float).reshape(-1, 2)
+    for i, j in np.argwhere(values >= around):
+        place, step = np.array([x[i, j], y[i, j]]), 0.1 * y[i, j]
+        for _ in range(60):
+            square = place + step * np.stack(np.meshgrid([0, -1, 1], [0, -1, 1]), axis=-1).reshape(-1, 2)
+            best = int(shear(square).argmax())
+            place, step = square[best], step if best else step / 2
+        depth, away = fine.query(place)[0], max(0.0, np.hypot(max(abs(place[0]) - end, 0), place[1]))
+        value = shear(place[None])[0]
+        if 0.01 * end < depth >= away / 2**0.5 and all(
+            shear(place + part * depth * circle).max() < value for part in (0.5, 0.9)
+        ):
+            found.append(float(value))
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("hole", "radius", "poisson_ratio"),
+    [((1.4, 1.8, 0.4), 13, 0.3), ((1.2, 1.0, 0.6), 30, 0.45), ((0.9, 0.9, 0.3), 60, 0.3), ((1.0, 1.2, 0.7), 6, 0.2)],
+)
+def test_dense_grid_has_no_larger_maximum(hole: tuple[float, float, float], radius: float, poisson_ratio: float):
+    """The largest maximum of shear below the contact is found, also beside its end; or the reason why there is none."""
+    result = plate(hole, radius, poisson_ratio)
+    largest = result.largest_stresses()
+    (x, _), (end, _) = result.footprint.intervals[0].start, result.footprint.intervals[0].end
+    maxima, peak = shear_maxima(result, max(abs(x), abs(end))), largest.shear["foot"]
+    if maxima:
+        assert peak is not None
+        assert peak.value == pytest.approx(max(maxima), rel=1e-4)
+    else:
+        assert peak is None
+        assert largest.missing["shear below foot"] is NoPeak.TO_BOUNDARY

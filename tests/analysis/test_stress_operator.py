@@ -42,6 +42,23 @@ def test_it_gives_the_stress_of_the_result(name: str):
     assert abs(difference).max() < 1e-13 * abs(result.contact.compliance).max()
 
 
+def test_round_off_on_short_elements():
+    """Along the boundary digits of displacement are lost: its round-off over the length of an element is a strain.
+
+    The shortest element is 3e-7 of the beam, which moves by a thousand times more than the element is long.
+    """
+    result = bemcontact.solve(bemcontact.load(MODELS / "gallery" / "beam_on_two_supports.yaml"))
+    points, mesh = places(result), result._stresses.bodies[0].field.mesh
+    found = stress_operator(result, points).at(result.solution.pressure, result.solution.rigid_amplitudes)
+    difference = abs(found.components - result.stress(points).components).max(axis=1)
+    inside = found.kind == "inside"
+    assert inside.sum() > 10
+    assert difference[inside].max() < 1e-12 * abs(found.components).max()
+    moved = abs(result.boundary.displacement).max()
+    strain = np.finfo(float).eps * moved / mesh.lengths.min()
+    assert difference.max() < 8 * strain * 2 * result.problem.material.shear_modulus
+
+
 def test_loads_of_cases_add_up():
     """The constants of each case are those of the permanent loads and of the case, with its factor."""
     results = bemcontact.solve_cases(made(FREE, **FREE_CASES).with_value("accuracy", None))

@@ -98,3 +98,5 @@ def test_largest_stresses_as_csv():
     infinite = [line for line in read(tables_of(punched())["largest_stresses.csv"]) if line["of"] == "infinite"]
     assert len(infinite) == len(punched().largest_stresses().singular) > 0
     assert {line["value"] for line in infinite} == {""}
+    reasons = [line["none"] for line in read(tables_of(punched())["largest_stresses.csv"]) if line["none"]]
+    assert reasons == [str(why) for why in punched().largest_stresses().missing.values()] != []
