@@ -50,6 +50,22 @@ def beam_over_a_circle() -> Problem:
     )  # pyright: ignore
 
 
+def seal_in_a_groove() -> Problem:
+    """A round body pressed on a floor by a loaded lid; it stands beside a wall, and touches it without pressure."""
+    ring = {"kind": "arc", "name": "ring", "center": [0, 0], "radius": 2, "angles": [0, 360], "elements": 32}
+    planes = {"floor": ([0, -2], [0, 1]), "wall": ([-2, 0], [1, 0]), "lid": ([0, 2], [0, -1])}
+    return Problem(
+        name="seal",
+        material={"young_modulus": 100, "poisson_ratio": 0.3},
+        boundary={"outer": [ring]},
+        contact_zones={
+            name: {"edges": "ring", "surface": {"kind": "plane", "point": point, "normal": normal}}
+            for name, (point, normal) in planes.items()
+        },
+        tools={"lid": {"zones": "lid", "point": [0, 2], "force": {"y": -5}}},
+    )  # pyright: ignore
+
+
 def strokes(axes: Axes) -> Iterator[np.ndarray]:
     for collection in axes.collections:
         if isinstance(collection, LineCollection):

@@ -256,8 +256,9 @@ def _draw_fan(axes: Axes, fan: Fan, tips: Array, spacing: float) -> None:
 
 def _fans(result: Result, state: BoundaryState) -> Iterator[Fan]:
     """The stretches of the contact zones that carry pressure, each with an open point at either end."""
-    contact, touching = result.contact, result.touching
-    pressure = np.where(touching, result.solution.pressure, 0.0)
+    contact, solution = result.contact, result.solution
+    touching = contact.pressed(solution.pressure, solution.displacement)
+    pressure = np.where(touching, solution.pressure, 0.0)
     nodes, moved = state.points.reshape(-1, 2), (state.points + state.displacement).reshape(-1, 2)
     places = dict(zip(map(tuple, nodes.tolist()), moved, strict=True))
     feet = np.array([places[x, y] for x, y in contact.points.tolist()])

@@ -167,8 +167,7 @@ PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 class Piece:
     """An unbroken piece of boundary in one contact zone, with its points (m,) in order.
 
-    A piece that closes on itself goes once round and ends at its first point; arc positions go on counting across the
-    place where they begin.
+    One with points all round ends at its first point. Arc positions go on counting across the place where they begin.
     """
 
     label: str
@@ -224,10 +223,18 @@ def distance_label(contact: CondensedContact, pieces: Sequence[Piece]) -> str:
 
 
 def _once_round(contact: CondensedContact, index: IntArray, touching: BoolArray) -> tuple[IntArray, Array]:
-    """Points (m,) of a run and their arc positions; a closed run begins and ends at one point that touches nothing."""
+    """Points (m,) of a run and their arc positions; a closed run begins and ends at one point that touches nothing.
+
+    If a stretch of it has no points, as a round body turns away from a plane, it begins and ends there.
+    """
     arc, perimeter, m = contact.arc_position[index], contact.run_length[contact.run[index[0]]], len(index)
     if not np.isfinite(perimeter):
         return index, arc
+    steps, lengths = np.diff(arc, append=arc[0] + perimeter), contact.weights[index]
+    pointless = np.where(steps > lengths + np.roll(lengths, -1), steps, 0.0)
+    if pointless.any():
+        around = np.arange(m) + int(pointless.argmax()) + 1
+        return index[around % m], arc[around % m] + around // m * perimeter
     first = 0
     if (touching[0] or touching[-1]) and not touching.all():
         begins = np.flatnonzero(touching & ~np.roll(touching, -1))  # last points before the open stretches

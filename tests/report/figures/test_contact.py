@@ -1,11 +1,12 @@
 """The picture of a contact: body and rigid surfaces where they are, and a fan as long as the pressure is large."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
-from drawings import block_in_a_corner, grey_lines, strokes
+from drawings import block_in_a_corner, grey_lines, seal_in_a_groove, strokes
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
@@ -144,6 +145,20 @@ def test_body_that_touches_nothing_is_drawn_without_a_fan():
     axes = drawn(analysis.solve(problem))
     assert lines(axes, VERMILION) == []
     assert not axes.texts
+
+
+@pytest.mark.parametrize("pressure", [0.0, 1e-18])
+@pytest.mark.filterwarnings("error")
+def test_zone_that_touches_without_pressure_has_no_fan(pressure: float):
+    """Nor a close-up, which would be scaled to a pressure that is round-off."""
+    result = analysis.solve(seal_in_a_groove())
+    contact, moved, pressed = result.contact, result.solution.displacement.copy(), result.solution.pressure.copy()
+    at = int(np.flatnonzero(contact.zone == contact.zone_names.index("wall"))[8])
+    pressed[at], moved[at] = pressure, -contact.initial_gap[at] - 1e-12
+    result = replace(result, solution=replace(result.solution, pressure=pressed, displacement=moved))
+    assert result.touching[at]
+    assert "wall" not in figures.close_ups(result)
+    assert len(lines(drawn(result), VERMILION)) == 2 * 2  # rim and feet of floor and lid
 
 
 def factor_of(axes: Axes) -> float:

@@ -9,7 +9,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 from contact_meshes import ring
-from drawings import beam_over_a_circle, block_in_a_corner
+from drawings import beam_over_a_circle, block_in_a_corner, seal_in_a_groove
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
@@ -37,8 +37,9 @@ def test_pieces_go_once_round_and_cut_no_contact(touching: list[bool], steps, cl
     m = len(touching)
     arc = np.cumsum([steps.uniform(0.1, 3.0) for _ in range(m)])
     perimeter = float(arc[-1]) + 1.0
+    between = np.diff(arc, append=arc[0] + perimeter)
     contact = replace(
-        CondensedContact.from_compliance(np.eye(m), -np.ones(m)),
+        CondensedContact.from_compliance(np.eye(m), -np.ones(m), weights=(between + np.roll(between, 1)) / 2),
         arc_position=arc, run_length=np.array([perimeter if closed else np.inf]),
     )  # fmt: skip
     (piece,) = pieces_of(contact, np.array(touching))
@@ -58,6 +59,17 @@ def test_pieces_go_once_round_and_cut_no_contact(touching: list[bool], steps, cl
     for start in arc[np.array(touching)]:
         place = piece.place_of(float(start), perimeter)
         assert piece.arc[0] <= place <= piece.arc[-1]
+
+
+@pytest.mark.parametrize("zone", [0, 1, 2])
+def test_no_line_goes_over_the_side_of_a_round_body_that_is_turned_away(zone: int):
+    """Only half of the ring is turned to each plane: a piece ends there, and does not go on to its first point."""
+    result = analysis.solve(seal_in_a_groove())
+    contact, length = result.contact, 2 * np.pi * 2
+    piece = [*pieces_of(contact, result.touching)][zone]
+    assert sorted(piece.index) == np.flatnonzero(contact.zone == zone).tolist()
+    assert np.diff(piece.arc) == pytest.approx(length / 64, rel=0.02)  # 32 elements of three nodes
+    assert np.ptp(piece.arc) == pytest.approx(length / 2, abs=2 * length / 32)  # an element to either side
 
 
 @pytest.mark.parametrize("name", ["long words " * 60, "x" * 900, "方块"])
