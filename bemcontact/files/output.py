@@ -126,9 +126,9 @@ def _parents(target: Path) -> Iterator[None]:
 def whole_folder(path: Path) -> Iterator[Path]:
     """Yield an empty temporary folder that replaces `path` when the block ends without an error; links are followed.
 
-    Missing folders above it are made. The contents of an old folder are lost. If the block fails, the temporary folder is removed. If the run is killed,
-    the complete old folder or the complete new one has the name. A hidden folder ``.NAME.xxxxxxxx.part`` may remain; a
-    run that starts an hour later removes it.
+    Missing folders above it are made. The contents of an old folder are lost. If the block fails, the temporary folder
+    is removed. If the run is killed, the complete old folder or the complete new one has the name. A hidden folder
+    ``.NAME.xxxxxxxx.part`` may remain; a run that starts an hour later removes it.
 
     Notes
     -----

@@ -1,12 +1,12 @@
 """HTML pages: templates with their filters, embedded pictures, and the page of a mesh study."""
 
 import re
-from base64 import b64encode
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
+from urllib.parse import quote
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
@@ -45,6 +45,8 @@ HISTORY = "history-"
 
 
 FORMULATIONS = {"qp1": "QP1", "qp2": "QP2", "qp3": "QP3"}
+PLAIN = " !$&'()*+,-./:;=?@_~"
+"""What a picture in a page keeps as it is, beside letters and digits: a third shorter than base64."""
 WIDE = 500.0
 """Width in points from which a picture gets the whole width of the page."""
 
@@ -83,8 +85,9 @@ def template(name: str, **more: Callable[..., Any]) -> Template:
 
 def picture(svg: bytes, caption: str, alternative: str) -> Picture:
     """Embed an SVG with a caption and a text alternative."""
+    dense = re.sub(rb"(?<=>)\s+(?=<)", b"", svg)
     return Picture(
-        source=f"data:image/svg+xml;base64,{b64encode(svg).decode('ascii')}",
+        source=f"data:image/svg+xml,{quote(dense, safe=PLAIN)}",
         alternative=alternative,
         caption=caption,
         wide=_width(svg) > WIDE,

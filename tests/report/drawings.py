@@ -5,8 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch
+from scipy.spatial import KDTree
 
 from bemcontact.problem import Problem
 
@@ -70,6 +73,19 @@ def strokes(axes: Axes) -> Iterator[np.ndarray]:
     for collection in axes.collections:
         if isinstance(collection, LineCollection):
             yield from map(np.asarray, collection.get_segments())
+
+
+def outlines(axes: Axes, color: str) -> np.ndarray:
+    """All points of the outlines of bodies in a color."""
+    patches = (
+        patch for patch in axes.patches if isinstance(patch, PathPatch) and patch.get_edgecolor() == to_rgba(color)
+    )
+    return np.concatenate([np.asarray(patch.get_path().vertices) for patch in patches])
+
+
+def off(points: np.ndarray, line: np.ndarray) -> float:
+    """The largest distance of a point (..., 2) from the nearest of those of a line (j, 2)."""
+    return float(KDTree(line).query(points.reshape(-1, 2))[0].max())
 
 
 def only_axes(figure: Figure) -> Axes:

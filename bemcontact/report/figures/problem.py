@@ -39,7 +39,15 @@ from bemcontact.report.figures.page import (
     without_glyph_warnings,
     wrapped,
 )
-from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
+from bemcontact.report.figures.symbols import (
+    Name,
+    draw_arrows,
+    draw_ground,
+    draw_rollers,
+    joined,
+    place_arrow,
+    place_names,
+)
 from bemcontact.report.formatting import NEGLIGIBLE, prescribed, tool_in_words, volume_loads
 
 Displacement = Callable[[Array], Array]
@@ -141,7 +149,9 @@ def _draw_mesh(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     corners = mesh.nodes[mesh.elements]
     colors = [ROLES[role(problem, mesh.edge_names[edge])] for edge in mesh.edge]
     curves = element_curves(corners, 9)
-    axes.add_collection(LineCollection(list(curves), colors=colors, linewidths=2.2, zorder=3))
+    for edge in np.unique(mesh.edge):
+        lines, color = joined(curves[mesh.edge == edge]), ROLES[role(problem, mesh.edge_names[edge])]
+        axes.add_collection(LineCollection(lines, colors=color, linewidths=2.2, zorder=3))
     for nodes, diameter in ((corners[:, 0], 4.5), (corners[:, 1], 2.5)):
         axes.scatter(*nodes.T, s=diameter**2, c="white", edgecolors=colors, linewidths=0.9, zorder=4)
 

@@ -1,6 +1,5 @@
 """Pages of all pictures: their files, sizes, colors, and a page written twice is the same."""
 
-import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,9 +12,6 @@ from drawings import beam_over_a_circle, block_in_a_corner, seal_in_a_groove
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
-from mesh_studies import (
-    on_one_mesh,
-)
 
 import bemcontact
 from bemcontact.analysis import solve as analysis
@@ -103,40 +99,6 @@ def test_unknown_format_is_refused(tmp_path: Path):
     with pytest.raises(ValueError, match=r"\.png, \.svg or \.pdf"):
         figures.save(Figure(), tmp_path / "figure.gif")
     assert [*tmp_path.iterdir()] == []
-
-
-def test_every_color_has_contrast_on_paper_and_in_the_dark():
-    """Lines and text against white and the dark page, 3 to 1 as WCAG asks of graphics; fills are only fills."""
-    text = figures.vector_graphic(figures.figures_of(on_one_mesh())["pressure"]).decode()
-    dark = dict(re.findall(r'\[style\*="stroke: (#\w{6})"\] \{ stroke: (#\w{6})', text))
-    page = dark.pop("#ffffff")
-    dark.pop("#e8ecf2")
-    assert len(dark) == 8
-    for there in dark.values():
-        assert contrast(there, page) > 4.5
-    strokes = {color for color in re.findall(r"stroke: (#\w{6})", text.split("</style>")[1]) if color != "#ffffff"}
-    for here in strokes - {"#cc79a7"}:  # of a reference, which is dashed
-        assert contrast(here, "#ffffff") > 3
-
-
-def contrast(one: str, other: str) -> float:
-    """Ratio of relative luminances, WCAG 2.2."""
-
-    def luminance(color: str) -> float:
-        rgb = np.array(matplotlib.colors.to_rgb(color))
-        linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
-        return float(linear @ (0.2126, 0.7152, 0.0722))
-
-    low, high = sorted((luminance(one), luminance(other)))
-    return (high + 0.05) / (low + 0.05)
-
-
-def test_a_picture_has_no_background_and_paths_are_rounded():
-    text = figures.vector_graphic(figures.figures_of(on_one_mesh())["gap"]).decode()
-    (patch,) = re.findall(r'<g id="patch_1">\s*<path[^>]*style="([^"]*)"', text)
-    assert "fill: none" in patch
-    assert not re.search(r' d="[^"]*\d\.\d{3}', text)
-    assert "screen and (prefers-color-scheme: dark)" in text
 
 
 @pytest.mark.parametrize(("seam", "beyond"), [(0.0, False), (90.0, True)])
