@@ -88,6 +88,14 @@ def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]
         yield f"pressure {field_on(condition.pressure, edge, units.stress)}"
 
 
+def material_in_words(problem: Problem) -> str:
+    """Constants of the material and the plane state: ``E = 210000 N/mm², Poisson's ratio 0.3, plane strain``."""
+    material, units = problem.material, problem.units
+    modulus = with_unit(f"{material.young_modulus:.9g}", units.stress)
+    state = material.state.replace("_", " ")
+    return f"E = {modulus}, Poisson's ratio {number(material.poisson_ratio)}, {state}"
+
+
 def volume_loads(problem: Problem) -> Iterator[str]:
     """Loads on the volume: ``gravity (0, -9.81)``, ``rotation 100 about (0, 0) (1.5 spinning)``."""
     yield from _volume_loads(problem.loads, problem)
@@ -162,6 +170,13 @@ def deflected_by(surface: DeflectedContour, problem: Problem) -> str:
         for name, condition in surface.conditions.items()
     ]
     return "; ".join([*conditions, *_volume_loads(surface.loads, problem)])
+
+
+def problem_in_words(problem: Problem) -> list[str]:
+    """The paragraphs of its description, then the material and the loads on the volume."""
+    loads = "; ".join(volume_loads(problem))
+    given = f"Material: {material_in_words(problem)}.{f' On the volume: {loads}.' if loads else ''}"
+    return [*paragraphs(problem.description), given]
 
 
 def paragraphs(text: str) -> list[str]:

@@ -49,6 +49,8 @@ PLAIN = " !$&'()*+,-./:;=?@_~"
 """What a picture in a page keeps as it is, beside letters and digits: a third shorter than base64."""
 WIDE = 500.0
 """Width in points from which a picture gets the whole width of the page."""
+NARROW = 385.0
+"""Width in points of a picture that fills its place beside another one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,6 +65,8 @@ class Picture:
     """The line above it."""
     wide: bool
     """Whether it needs the whole width of the page."""
+    share: int
+    """Percentage of its place that it fills if all pictures have letters of one size."""
 
 
 @cache
@@ -91,6 +95,7 @@ def picture(svg: bytes, caption: str, alternative: str) -> Picture:
         alternative=alternative,
         caption=caption,
         wide=_width(svg) > WIDE,
+        share=min(100, round(100 * _width(svg) / NARROW)) if 0 < _width(svg) <= WIDE else 100,
     )
 
 

@@ -10,7 +10,7 @@ from bemcontact.report.breakpoints import breakpoint_words
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.formatting import (
     number,
-    paragraphs,
+    problem_in_words,
     sentence_case,
     vector,
     with_unit,
@@ -19,7 +19,7 @@ from bemcontact.report.formatting import (
 )
 from bemcontact.report.page import Picture, picture, template
 from bemcontact.report.path_verdicts import path_verdicts
-from bemcontact.report.verdicts import NOT_LOOKED_AT, overall
+from bemcontact.report.verdicts import BEYOND, NOT_LOOKED_AT, overall
 from bemcontact.version import __version__
 
 MOST_ROWS = 500
@@ -53,7 +53,7 @@ def render(path: ParameterPath, pictures: Mapping[str, bytes], problem: Problem 
         key=path.key,
         start=number(path.start),
         end=number(path.end),
-        description=paragraphs(problem.description) if problem else [],
+        description=problem_in_words(problem) if problem else [],
         surfaces=zone_surfaces(problem) if problem else [],
         pictures=[(name, _picture(name, svg, path, problem)) for name, svg in pictures.items()],
         zones=path.zones,
@@ -64,6 +64,7 @@ def render(path: ParameterPath, pictures: Mapping[str, bytes], problem: Problem 
         bars_are=BARS_ARE,
         not_looked_at=NOT_LOOKED_AT,
         notes=[f"{sentence_case(note)}." for note in path.notes],
+        notes_beyond=any(BEYOND in note for note in path.notes),
         spec=spec,
     )
 

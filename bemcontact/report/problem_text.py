@@ -9,6 +9,7 @@ from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.formatting import (
     case_in_words,
     deflected_by,
+    material_in_words,
     number,
     prescribed,
     reference_in_words,
@@ -25,14 +26,9 @@ from bemcontact.report.tables import add, list_of_facts, table_of
 def problem_summary(checked: CheckedProblem) -> RenderableType:
     """List edges, zones, mesh, loads, supports and notes of a problem."""
     problem, mesh = checked.problem, checked.mesh
-    material, units = problem.material, problem.units
-    modulus = with_unit(number(material.young_modulus), units.stress)
+    units = problem.units
     shown = list_of_facts()
-    add(
-        shown,
-        "Material",
-        f"E = {modulus}, Poisson's ratio {number(material.poisson_ratio)}, {material.state.replace('_', ' ')}",
-    )
+    add(shown, "Material", material_in_words(problem))
     points = sum(map(len, checked.gaps.values()))
     add(shown, "Mesh", f"{len(mesh.elements)} elements, {len(mesh.nodes)} nodes, {points} contact points")
     add(shown, "Degrees of freedom", f"{mesh.degrees_of_freedom}")

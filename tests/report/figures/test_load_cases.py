@@ -19,8 +19,8 @@ from bemcontact.contact.stress import PointKind
 from bemcontact.options import StressMeasure
 from bemcontact.report import figures
 from bemcontact.report.figures.deformed import magnification
-from bemcontact.report.figures.load_cases import figure_of_contacts, figure_of_stresses
 from bemcontact.report.figures.page import BLACK
+from bemcontact.report.figures.pictures import figure_of_contacts, figure_of_stresses
 from bemcontact.report.figures.stress import color_scale
 
 GALLERY = Path(__file__).parents[3] / "models" / "gallery"
