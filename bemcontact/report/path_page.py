@@ -28,7 +28,7 @@ CAPTIONS = {
     "problem": "What was asked, at the end of the path",
     "peak": "Peak pressure; dots are breakpoints, hollow ones have an error larger than asked, or not known",
     "force": "Force of each rigid surface on the body",
-    "moment": "Moment of each rigid surface on the body, about (0, 0)",
+    "moment": "Moment of each rigid surface on the body, about (0, 0); errors of moments are not estimated",
     "pressure": "Pressure along the contact zone, from the start of the path to its end",
 }
 """Name of a picture -> its caption."""
@@ -101,4 +101,7 @@ def _picture(name: str, svg: bytes, path: ParameterPath, problem: Problem | None
     caption = CAPTIONS[kind] if kind in CAPTIONS else f"{path.zones[int(order) - 1]}: {ENDS}"
     if name == "problem" and problem is not None and problem.adapts:
         caption += "; the elements are those from which the search for a mesh begins"
+    if kind in ("force", "contact"):
+        assessed = any(state.bars for state in path.states)
+        caption += "; bars are errors at breakpoints" if assessed else "; errors are not known"
     return picture(svg, caption, f"{path.name}. {caption}.")

@@ -1,6 +1,6 @@
 """The picture of a load path: peak, resultant and ends of contact over the parameter."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
 import numpy as np
@@ -132,10 +132,9 @@ def draw_peaks(axes: Axes, path: ParameterPath) -> None:
         axes.set_yticks([])
         return
     _draw_line(axes, path, [state.peak or 0.0 for state in path.states], BLACK, "")
-    known = [(state.value, state.peak, state.peak * state.peak_bar) for state in path.pressed
-             if state.peak is not None and state.peak_bar is not None]  # fmt: skip
-    for value, peak, error in known:
-        axes.vlines(value, peak - error, peak + error, color=BLACK, linewidth=1.0)
+    known = ((state.value, state.peak, state.peak * state.peak_bar) for state in path.pressed
+             if state.peak is not None and state.peak_bar is not None)  # fmt: skip
+    _draw_errors(axes, known, BLACK)
     axes.scatter(
         [state.value for state in path.coarse], [state.peak or 0.0 for state in path.coarse],
         s=14, facecolors="white", edgecolors=VERMILION, linewidth=1.0, zorder=3,
@@ -144,9 +143,19 @@ def draw_peaks(axes: Axes, path: ParameterPath) -> None:
 
 
 def draw_resultants(axes: Axes, path: ParameterPath) -> None:
-    """Draw the size of the force of each rigid surface on the body over the parameter."""
+    """Draw the size of the force of each rigid surface on the body over the parameter, with errors at breakpoints."""
     sizes = [[float(np.hypot(*force)) for force in state.resultant] for state in path.states]
     _draw_by_zone(axes, path, sizes)
+    for order, zone in enumerate(path.zones):
+        forces = (
+            (state, float(np.hypot(*state.resultant[order])), bar)
+            for state in path.breakpoints for bar in state.bars if bar.quantity == "force" and bar.zone == zone
+        )  # fmt: skip
+        known = (
+            (state.value, size, abs(bar.value) * bar.bar) for state, size, bar in forces
+            if bar.value is not None and bar.bar is not None
+        )  # fmt: skip
+        _draw_errors(axes, known, CYCLE[order % len(CYCLE)])
     axes.set_ylabel(labeled("resultant", units_of(path.contact).line_force))
     axes.set_ylim(bottom=0)
 
@@ -173,7 +182,7 @@ def begin_at_left(axes: Axes, path: ParameterPath) -> None:
 
 
 def draw_interval_ends(axes: Axes, path: ParameterPath, zone: str) -> None:
-    """Draw where a zone is in contact, by arc position, over the parameter; dots are breakpoints."""
+    """Draw where a zone is in contact, by arc position, over the parameter; dots are breakpoints, bars their errors."""
     begin_at_left(axes, path)
     color, stops = CYCLE[path.zones.index(zone) % len(CYCLE)], {state.value for state in path.breakpoints}
     for values, starts, ends in _bands(path.states, zone):
@@ -182,7 +191,26 @@ def draw_interval_ends(axes: Axes, path: ParameterPath, zone: str) -> None:
             axes.plot(values, edge, color=color, linewidth=1.4)
             marked = [(value, y) for value, y in zip(values, edge, strict=True) if value in stops]
             axes.plot(*np.reshape(marked, (-1, 2)).T, color=color, linestyle="none", marker="o", markersize=2.2)
+    _draw_errors(axes, _errors_of_ends(path, zone), color)
     axes.set_ylabel(labeled(f"contact of {short_label(zone, 16)}", units_of(path.contact).length))
+
+
+def _errors_of_ends(path: ParameterPath, zone: str) -> Iterator[tuple[float, float, float]]:
+    """Value, arc position and error of each end of contact at a breakpoint where it is known."""
+    for state in path.breakpoints:
+        both = state.ends(zone)
+        for bar in state.bars:
+            if bar.quantity in ("start", "end") and bar.zone == zone and bar.bar is not None:
+                i = bar.interval or 0
+                length = both[1][i] - both[0][i]
+                yield state.value, both[bar.quantity == "end"][i], bar.bar * length
+
+
+def _draw_errors(axes: Axes, known: Iterable[tuple[float, float, float]], color: str) -> None:
+    """Draw bars at values, around heights, as long as errors to either side."""
+    if bars := [*known]:
+        values, heights, errors = np.array(bars).T
+        axes.vlines(values, heights - errors, heights + errors, color=color, linewidth=1.0)
 
 
 def _draw_line(axes: Axes, path: ParameterPath, heights: list[float], color: str, label: str) -> None:

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 from mesh_studies import punch
 
 import bemcontact
@@ -71,6 +73,28 @@ def test_a_path_that_is_too_coarse_between_its_ends_is_drawn(link: ParameterPath
     assert figures.figure_of_path(unknown).axes[0].get_title().endswith("mesh: not assessed between the ends")
 
 
+def test_errors_of_forces_and_ends_are_bars(link: ParameterPath):
+    """A bar of a force is relative to it, one of an end to the length of its interval."""
+    last = link.states[-1]
+    ((start,), (end,)), force = last.ends("table"), float(np.hypot(*last.resultant[1]))
+    bars = (
+        ErrorBar(quantity="force", zone="table", value=force, bar=0.02),
+        ErrorBar(quantity="start", zone="table", interval=0, value=start, bar=0.03),
+        ErrorBar(quantity="end", zone="table", interval=0, value=end, bar=0.05),
+        ErrorBar(quantity="end", zone="drum", interval=0, value=end, bar=None),
+    )
+    known = replace(link, breakpoint_bars=(*((),) * (len(link.breakpoints) - 1), bars))
+    drawn = []
+    for draw in (figures.draw_resultants, lambda axes, path: figures.draw_interval_ends(axes, path, "table")):
+        axes = Figure().add_subplot()
+        draw(axes, known)
+        drawn.append([bar for it in axes.collections if isinstance(it, LineCollection) for bar in it.get_segments()])
+    length = end - start
+    np.testing.assert_allclose(drawn[0], [[(20, 0.98 * force), (20, 1.02 * force)]])
+    expected = [[(20, y - error * length), (20, y + error * length)] for y, error in ((start, 0.03), (end, 0.05))]
+    np.testing.assert_allclose(drawn[1], expected)
+
+
 def test_accuracies_of_both_ends_are_in_the_title(link: ParameterPath):
     title = figures.figure_of_path(link).axes[0].get_title()
     assert "unique solution proved" in title
@@ -122,7 +146,8 @@ def test_breakpoints_with_too_large_an_error_are_hollow(link: ParameterPath):
     known = tuple((bars[i % 2],) for i in range(len(link.breakpoints)))
     coarse = replace(link, start_accuracy=accuracy, end_accuracy=accuracy, breakpoint_bars=known)
     axes = figures.figures_of_path(coarse)["peak"].axes[0]
-    *ranges, hollow = axes.collections
+    ranges, hollow = axes.collections
+    assert isinstance(ranges, LineCollection)
     wanted = [state for i, state in enumerate(coarse.breakpoints) if not i % 2 and state in coarse.pressed]
     np.testing.assert_array_equal(hollow.get_offsets(), [(state.value, state.peak) for state in wanted])
-    assert len(ranges) == len(coarse.pressed)
+    assert len(ranges.get_segments()) == len(coarse.pressed)
