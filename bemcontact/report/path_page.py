@@ -29,7 +29,7 @@ CAPTIONS = {
     "peak": "Peak pressure; dots are breakpoints, hollow ones have an error larger than asked, or not known",
     "force": "Force of each rigid surface on the body",
     "moment": "Moment of each rigid surface on the body, about (0, 0); errors of moments are not estimated",
-    "pressure": "Pressure along the contact zone, from the start of the path to its end",
+    "pressure": "Pressure along the contact zones at eight values, from the start of the path to its end",
 }
 """Name of a picture -> its caption."""
 
@@ -78,7 +78,8 @@ def _headline(path: ParameterPath, units: Units) -> Iterator[tuple[str, str, str
     elif path.pressed:
         highest = max(path.pressed, key=lambda state: state.peak or 0.0)
         value = with_unit(with_bar(highest.peak or 0.0, highest.peak_bar), units.stress)
-        yield "Largest peak pressure", value, f"at {number(highest.value)}"
+        unknown = ", error not known" if highest.peak_bar is None else ""
+        yield "Largest peak pressure", value, f"at {number(highest.value)}{unknown}"
 
 
 def _rows(path: ParameterPath) -> Iterator[dict[str, Any]]:

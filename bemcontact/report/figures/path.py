@@ -6,6 +6,7 @@ from itertools import groupby
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from bemcontact.arrays import Array
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
@@ -25,7 +26,7 @@ from bemcontact.report.figures.page import (
     plain,
     short_label,
 )
-from bemcontact.report.formatting import number
+from bemcontact.report.formatting import number, zero_if_negligible
 from bemcontact.report.path_verdicts import path_verdicts
 from bemcontact.report.verdicts import in_short, overall
 
@@ -35,6 +36,8 @@ PANELS = 8
 """Number of states whose pressure is drawn."""
 ROOM = 0.25
 """Room beside the contact in pictures of states, over its extent."""
+SEEN = 0.2
+"""Share of the height of a panel from which on a pressure is seen well."""
 SHADE = 0.15
 """Opacity of stretches in contact."""
 
@@ -86,13 +89,14 @@ def _panel(figures: dict[str, Figure], name: str, path: ParameterPath) -> Axes:
 def draw_states(figure: Figure, path: ParameterPath) -> None:
     """Draw the pressure along the contact zones at evenly spaced values of the parameter, in a panel each.
 
-    All panels have one scale; an infinite pressure is cut off.
+    All panels have one scale, unless both ends of the path would not be seen in it; an infinite pressure is cut off.
     """
     at = np.linspace(path.path.begins_at, path.path.ends_at, PANELS).tolist()
     states = [path.path.at(t).pressure for t in at]
     tops = [ceiling(path.contact, pressure, path.infinite) or 1.08 * pressure.max(initial=0.0) for pressure in states]
     pieces = [*pieces_of(path.contact, np.any([pressure > 0 for pressure in states], axis=0))]
-    panels = figure.subplots(PANELS // 2, 2, sharex=True, sharey=True).ravel().tolist()
+    alike = max(tops[0], tops[-1]) >= SEEN * max(tops)
+    panels = figure.subplots(PANELS // 2, 2, sharex=True, sharey=alike).ravel().tolist()
     for axes, t, pressure in zip(panels, at, states, strict=True):
         for piece in pieces:
             color = CYCLE[int(path.contact.zone[piece.index[0]]) % len(CYCLE)]
@@ -101,11 +105,17 @@ def draw_states(figure: Figure, path: ParameterPath) -> None:
         axes.set_title(f"at {number(path.value(t))}", fontsize=9, loc="left")
         axes.spines[["top", "right"]].set_visible(False)
     panels[0].set_xlim(*_around_contact(pieces, states))
-    panels[0].set_ylim(0.0, max(tops) or 1.0)
+    for axes, top in zip(panels, tops, strict=True):
+        axes.set_ylim(0.0, (max(tops) if alike else top) or 1.0)
     unit = units_of(path.contact)
     figure.supxlabel(labeled("distance along the contact zone", unit.length), fontsize=9)
     cut = f", infinite in {', '.join(path.infinite)}: cut off" if path.infinite else ""
-    figure.supylabel(labeled("pressure", unit.stress) + plain(cut), fontsize=9)
+    scales = "" if alike else ", each panel with a scale of its own"
+    figure.supylabel(labeled("pressure", unit.stress) + plain(cut) + scales, fontsize=9)
+    if len(path.zones) > 1:
+        lines = [Line2D([], [], color=CYCLE[order % len(CYCLE)]) for order in range(len(path.zones))]
+        names = [short_label(zone, 24) for zone in path.zones]
+        figure.legend(lines, names, loc="outside upper center", ncols=3, frameon=False, fontsize=8.5)
 
 
 def _around_contact(pieces: Sequence[Piece], states: Sequence[Array]) -> tuple[float, float]:
@@ -139,13 +149,13 @@ def draw_peaks(axes: Axes, path: ParameterPath) -> None:
         [state.value for state in path.coarse], [state.peak or 0.0 for state in path.coarse],
         s=14, facecolors="white", edgecolors=VERMILION, linewidth=1.0, zorder=3,
     )  # fmt: skip
-    axes.set_ylim(bottom=0)
+    axes.set_ylim(0.0, max(axes.get_ylim()[1], 1.08 * max(state.peak or 0.0 for state in path.states)))
 
 
 def draw_resultants(axes: Axes, path: ParameterPath) -> None:
     """Draw the size of the force of each rigid surface on the body over the parameter, with errors at breakpoints."""
     sizes = [[float(np.hypot(*force)) for force in state.resultant] for state in path.states]
-    _draw_by_zone(axes, path, sizes)
+    _draw_by_zone(axes, path, sizes, _pressing(path))
     for order, zone in enumerate(path.zones):
         forces = (
             (state, float(np.hypot(*state.resultant[order])), bar)
@@ -162,15 +172,29 @@ def draw_resultants(axes: Axes, path: ParameterPath) -> None:
 
 def draw_moments(axes: Axes, path: ParameterPath) -> None:
     """Draw the moment about the origin of the force of each rigid surface on the body over the parameter."""
-    _draw_by_zone(axes, path, [[*state.moments] for state in path.states])
+    lever = float(np.abs(path.contact.points).max())
+    _draw_by_zone(axes, path, [[*state.moments] for state in path.states], lever * _pressing(path))
     axes.set_ylabel(labeled("moment about (0, 0)", units_of(path.contact).line_moment))
 
 
-def _draw_by_zone(axes: Axes, path: ParameterPath, numbers: list[list[float]]) -> None:
-    """Draw a number of each zone, given state by state, over the parameter."""
+def _pressing(path: ParameterPath) -> float:
+    """The largest force that the pressure could have if it had one direction [p L]; what is small beside it is zero."""
+    return max(float(np.abs(state.resultant).max(initial=0.0)) for state in path.states) + float(
+        max((state.peak or 0.0 for state in path.states), default=0.0) * path.contact.weights.sum()
+    )
+
+
+def _draw_by_zone(axes: Axes, path: ParameterPath, numbers: list[list[float]], scale: float) -> None:
+    """Draw a number of each zone, given state by state, over the parameter; what is round-off beside a scale is zero."""
     begin_at_left(axes, path)
     for order, zone in enumerate(path.zones):
-        _draw_line(axes, path, [row[order] for row in numbers], CYCLE[order % len(CYCLE)], plain(zone))
+        _draw_line(
+            axes,
+            path,
+            [zero_if_negligible(row[order], scale) for row in numbers],
+            CYCLE[order % len(CYCLE)],
+            plain(zone),
+        )
     if len(path.zones) > 1:
         axes.legend(frameon=False, fontsize=8.5)
 
@@ -192,7 +216,7 @@ def draw_interval_ends(axes: Axes, path: ParameterPath, zone: str) -> None:
             marked = [(value, y) for value, y in zip(values, edge, strict=True) if value in stops]
             axes.plot(*np.reshape(marked, (-1, 2)).T, color=color, linestyle="none", marker="o", markersize=2.2)
     _draw_errors(axes, _errors_of_ends(path, zone), color)
-    axes.set_ylabel(labeled(f"contact of {short_label(zone, 16)}", units_of(path.contact).length))
+    axes.set_ylabel(labeled(f"distance along {short_label(zone, 16)}", units_of(path.contact).length))
 
 
 def _errors_of_ends(path: ParameterPath, zone: str) -> Iterator[tuple[float, float, float]]:

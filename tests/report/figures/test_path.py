@@ -27,7 +27,7 @@ def link() -> ParameterPath:
 def test_page_has_a_picture_of_each_zone(link: ParameterPath):
     page = figures.figure_of_path(link)
     labels = [axes.get_ylabel() for axes in page.axes]
-    assert labels == ["peak pressure [N/mm²]", "resultant [N/mm]", *(f"contact of {zone} [mm]" for zone in
+    assert labels == ["peak pressure [N/mm²]", "resultant [N/mm]", *(f"distance along {zone} [mm]" for zone in
                       ("drum", "table", "wall"))]  # fmt: skip
     assert page.axes[-1].get_xlabel() == "conditions.loaded.pressure"
 
@@ -151,3 +151,25 @@ def test_breakpoints_with_too_large_an_error_are_hollow(link: ParameterPath):
     wanted = [state for i, state in enumerate(coarse.breakpoints) if not i % 2 and state in coarse.pressed]
     np.testing.assert_array_equal(hollow.get_offsets(), [(state.value, state.peak) for state in wanted])
     assert len(ranges.get_segments()) == len(coarse.pressed)
+
+
+def test_panels_have_one_scale_unless_both_ends_are_hidden_in_it(link: ParameterPath):
+    """A beam first touches with its tip, under a pressure 30 times the last one: each panel has its own scale."""
+    beam = bemcontact.load(MODELS / "cantilever_flat_surface.yaml", variant="stated mesh")
+    for path, alike in ((link, True), (bemcontact.follow(beam, "conditions.top.traction.y", -3.6, 0), False)):
+        figure = figures.figures_of_path(path)["pressure"]
+        tops = [axes.get_ylim()[1] for axes in figure.axes]
+        assert (len({*tops}) == 1) == alike
+        for axes, top in zip(figure.axes, tops, strict=True):
+            assert max(float(np.max(line.get_ydata())) for line in axes.lines) <= top
+        assert ("scale of its own" in str(figure.get_supylabel())) != alike
+
+
+def test_round_off_is_drawn_as_zero():
+    """The forces of a pin on a ring that is shrunk on it cancel."""
+    ring = bemcontact.load(MODELS / "gallery" / "shrink_fit.yaml", variant="stated mesh")
+    path = bemcontact.follow(ring, "contact_zones.pin.surface.radius", 10.02, 10.005)
+    for draw in (figures.draw_resultants, figures.draw_moments):
+        axes = Figure().add_subplot()
+        draw(axes, path)
+        assert not np.asarray(axes.lines[0].get_ydata()).any()
