@@ -26,7 +26,7 @@ from bemcontact.report.figures.page import (
     plain,
     short_label,
 )
-from bemcontact.report.formatting import number, zero_if_negligible
+from bemcontact.report.formatting import number
 from bemcontact.report.path_verdicts import path_verdicts
 from bemcontact.report.verdicts import in_short, overall
 
@@ -36,6 +36,8 @@ PANELS = 8
 """Number of states whose pressure is drawn."""
 ROOM = 0.25
 """Room beside the contact in pictures of states, over its extent."""
+ROUND_OFF = 1e-12
+"""Share of the largest force, or moment, that pressures could have, which is no result."""
 SEEN = 0.2
 """Share of the height of a panel from which on a pressure is seen well."""
 SHADE = 0.15
@@ -178,14 +180,14 @@ def draw_moments(axes: Axes, path: ParameterPath) -> None:
 
 
 def _pressing(path: ParameterPath) -> float:
-    """The largest force that the pressure could have if it had one direction [p L]; what is small beside it is zero."""
-    return max(float(np.abs(state.resultant).max(initial=0.0)) for state in path.states) + float(
-        max((state.peak or 0.0 for state in path.states), default=0.0) * path.contact.weights.sum()
-    )
+    """A force that no pressure on the path exceeds [p L]."""
+    forces = [np.abs(state.resultant).max(initial=0.0) for state in path.states]
+    peaks = [state.peak or 0.0 for state in path.states]
+    return float(max(forces) + max(peaks) * path.contact.weights.sum())
 
 
 def _draw_by_zone(axes: Axes, path: ParameterPath, numbers: list[list[float]], scale: float) -> None:
-    """Draw a number of each zone, given state by state, over the parameter; what is round-off beside a scale is zero."""
+    """Draw a number of each zone, given state by state, over the parameter; round-off beside a scale is zero."""
     begin_at_left(axes, path)
     for order, zone in enumerate(path.zones):
         _draw_line(
