@@ -190,13 +190,8 @@ def _draw_by_zone(axes: Axes, path: ParameterPath, numbers: list[list[float]], s
     """Draw a number of each zone, given state by state, over the parameter; round-off beside a scale is zero."""
     begin_at_left(axes, path)
     for order, zone in enumerate(path.zones):
-        _draw_line(
-            axes,
-            path,
-            [zero_if_negligible(row[order], scale) for row in numbers],
-            CYCLE[order % len(CYCLE)],
-            plain(zone),
-        )
+        heights = [row[order] if abs(row[order]) > ROUND_OFF * scale else 0.0 for row in numbers]
+        _draw_line(axes, path, heights, CYCLE[order % len(CYCLE)], plain(zone))
     if len(path.zones) > 1:
         axes.legend(frameon=False, fontsize=8.5)
 
