@@ -206,11 +206,13 @@ def draw_interval_ends(axes: Axes, path: ParameterPath, zone: str) -> None:
     """Draw where a zone is in contact, by arc position, over the parameter; dots are breakpoints, bars their errors."""
     begin_at_left(axes, path)
     color, stops = CYCLE[path.zones.index(zone) % len(CYCLE)], {state.value for state in path.breakpoints}
-    for values, starts, ends in _bands(path.states, zone):
-        axes.fill_between(values, starts, ends, color=color, alpha=SHADE, linewidth=0)
-        for edge in (starts, ends):
+    bands = [*_bands(path.states, zone)]
+    if bands:
+        values, *both = (np.concatenate([[np.nan, *band[i]] for band in bands])[1:] for i in range(3))
+        axes.fill_between(values, *both, color=color, alpha=SHADE, linewidth=0)
+        for edge in both:
             axes.plot(values, edge, color=color, linewidth=1.4)
-            marked = [(value, y) for value, y in zip(values, edge, strict=True) if value in stops]
+            marked = [(value, y) for value, y in zip(values.tolist(), edge, strict=True) if value in stops]
             axes.plot(*np.reshape(marked, (-1, 2)).T, color=color, linestyle="none", marker="o", markersize=2.2)
     _draw_errors(axes, _errors_of_ends(path, zone), color)
     axes.set_ylabel(labeled(f"distance along {short_label(zone, 16)}", units_of(path.contact).length))
