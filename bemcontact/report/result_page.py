@@ -28,6 +28,7 @@ from bemcontact.report.facts import (
     total_force,
 )
 from bemcontact.report.figures.load_cases import shown_cases
+from bemcontact.report.figures.stress import UNIFORM
 from bemcontact.report.formatting import (
     NEGLIGIBLE,
     JsonObject,
@@ -168,6 +169,10 @@ def _stresses(result: Result, units: Units) -> Iterator[tuple[str, str, str]]:
         return
     largest = result.largest_stresses()
     size = float(abs(result.boundary.points).max())
+    everywhere = result.triangulated.stress.measured(StressMeasure.VON_MISES)
+    if not len(largest.singular) and largest.boundary and np.ptp(everywhere) <= UNIFORM * everywhere.max():
+        yield "von Mises", _stress(largest.boundary, units), "the same all over the body"
+        return
     for zone, peak in largest.shear.items():
         if peak is not None:
             depth = with_unit(number(peak.depth), units.length)

@@ -208,9 +208,9 @@ def draw_interval_ends(axes: Axes, path: ParameterPath, zone: str) -> None:
     color, stops = CYCLE[path.zones.index(zone) % len(CYCLE)], {state.value for state in path.breakpoints}
     bands = [*_bands(path.states, zone)]
     if bands:
-        values, *both = (np.concatenate([[np.nan, *band[i]] for band in bands])[1:] for i in range(3))
-        axes.fill_between(values, *both, color=color, alpha=SHADE, linewidth=0)
-        for edge in both:
+        values, starts, ends = (np.concatenate([[np.nan, *band[i]] for band in bands])[1:] for i in range(3))
+        axes.fill_between(values, starts, ends, color=color, alpha=SHADE, linewidth=0)
+        for edge in (starts, ends):
             axes.plot(values, edge, color=color, linewidth=1.4)
             marked = [(value, y) for value, y in zip(values.tolist(), edge, strict=True) if value in stops]
             axes.plot(*np.reshape(marked, (-1, 2)).T, color=color, linestyle="none", marker="o", markersize=2.2)

@@ -334,6 +334,8 @@ def _draw_legend(axes: Axes, problem: Problem) -> None:
     """Explain the colors in the picture, and list the loads on the volume."""
     occurring = {role(problem, edge.name) for edge in problem.boundary.edges}
     handles = [Line2D([], [], color=c, linewidth=2.5, label=name) for name, c in ROLES.items() if name in occurring]
+    if "loaded" not in occurring and any(any(problem.tool_action(tool).load[:2]) for tool in problem.tools):
+        handles.append(Line2D([], [], color=GREEN, linewidth=1.3, label="force on a tool"))
     handles.append(Line2D([], [], color=GREY, linewidth=1.3, label="rigid surface, normal"))
     handles += [Line2D([], [], linestyle="none", label=load) for load in volume_loads(problem)]
     axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
