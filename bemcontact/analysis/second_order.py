@@ -185,8 +185,8 @@ def _wrong(stiffer: float) -> str:
 def across(mesh: Mesh) -> tuple[Array, IntArray, Array]:
     """Thickness (m,) [L] at the middle of each element: the distance through the body to the boundary that faces it.
 
-    It is infinite where none does. Each body is looked at by itself. Then the element that faces it (m,), and the local coordinate (m,) of the place
-    opposite, which may be in the next element.
+    It is infinite where none does. Each body is looked at by itself. Then the element that faces it (m,), and the local
+    coordinate (m,) of the place opposite, which may be in the next element.
     """
     at, normals, tangents = mesh.nodes[mesh.elements[:, 1]], mesh.normals[:, 1], mesh.tangents[:, 1]
     thickness, facing, local = np.full(len(at), np.inf), np.arange(len(at)), np.zeros(len(at))

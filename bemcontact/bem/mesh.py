@@ -1,7 +1,8 @@
 """The boundary in quadratic elements, and the values that the conditions prescribe on it."""
 
+import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, NamedTuple
 
@@ -48,9 +49,9 @@ class Mesh:
     elements: IntArray
     edge: IntArray
     edge_names: tuple[str, ...]
-    fractions: Array = field(default_factory=lambda: np.zeros((0, 3)))
-    part: IntArray = field(default_factory=lambda: np.zeros(0, int))
-    facing: Mapping[str, IntArray] = field(default_factory=dict)
+    fractions: Array = dataclasses.field(default_factory=lambda: np.zeros((0, 3)))
+    part: IntArray = dataclasses.field(default_factory=lambda: np.zeros(0, int))
+    facing: Mapping[str, IntArray] = dataclasses.field(default_factory=dict)
 
     def ends_on(self, edge: str) -> Array:
         """Fractions (e + 1,) of the length of an edge at the ends of its elements."""

@@ -86,7 +86,10 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 
 def ensure_folder_place(path: Path) -> None:
-    """Raise `OSError` with the reason if `whole_folder` cannot write this folder; its contents are not checked."""
+    """Raise `OSError` with the reason if `whole_folder` cannot write this folder; its contents are not checked.
+
+    Missing folders above it are made, and removed again.
+    """
     target = real(path)
     if target.exists() and not target.is_dir():
         raise NotADirectoryError(f"{path} is a file; name a folder")
@@ -94,27 +97,38 @@ def ensure_folder_place(path: Path) -> None:
         raise OSError(f"{path} is a mount point and cannot be replaced; name a folder in it")
     if target in (here := Path.cwd(), *here.parents):
         raise OSError(f"{path} is the current directory or contains it, and cannot be replaced; name a folder in it")
-    if not target.parent.is_dir():
-        raise FileNotFoundError(f"{path}: there is no directory {target.parent}; make it first")
-    probe = _beside(target)
+    above = next(folder for folder in target.parents if folder.exists())
+    if not above.is_dir():
+        raise NotADirectoryError(f"{path}: {above} is a file, and can hold no folder; name another place")
     try:
-        probe.mkdir()
-        probe.rmdir()
-        if target.is_dir():
-            probe = _beside(target / "within")
-            probe.mkdir()
-            probe.rmdir()
+        with _parents(target):
+            for probe in (_beside(target), *([_beside(target / "within")] if target.is_dir() else [])):
+                probe.mkdir()
+                probe.rmdir()
     except OSError as error:
         raise OSError(f"{path} cannot be written: {error.strerror}") from error
+
+
+@contextmanager
+def _parents(target: Path) -> Iterator[None]:
+    """Make the missing folders above a target; those in which nothing is at the end are removed again."""
+    missing = [folder for folder in target.parents if not folder.exists()]
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        yield
+    finally:
+        for folder in missing:
+            with suppress(OSError):
+                folder.rmdir()
 
 
 @contextmanager
 def whole_folder(path: Path) -> Iterator[Path]:
     """Yield an empty temporary folder that replaces `path` when the block ends without an error; links are followed.
 
-    The contents of an old folder are lost. If the block fails, the temporary folder is removed. If the run is killed,
-    the complete old folder or the complete new one has the name. A hidden folder ``.NAME.xxxxxxxx.part`` may remain; a
-    run that starts an hour later removes it.
+    Missing folders above it are made. The contents of an old folder are lost. If the block fails, the temporary folder
+    is removed. If the run is killed, the complete old folder or the complete new one has the name. A hidden folder
+    ``.NAME.xxxxxxxx.part`` may remain; a run that starts an hour later removes it.
 
     Notes
     -----
@@ -126,14 +140,15 @@ def whole_folder(path: Path) -> Iterator[Path]:
     target = real(path)
     _remove_abandoned(target)
     temporary = _beside(target)
-    try:
-        with _named(path, temporary):
-            temporary.mkdir()
-            yield temporary
-            _flush(temporary)
-            _put(temporary, target)
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
+    with _parents(target):
+        try:
+            with _named(path, temporary):
+                temporary.mkdir()
+                yield temporary
+                _flush(temporary)
+                _put(temporary, target)
+        finally:
+            shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _put(new: Path, target: Path) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.bodies import SEPARATOR, BodySpec, qualified
 from bemcontact.problem.body_surface import BodySurface
@@ -16,6 +18,11 @@ from bemcontact.problem.wording import unknown_word
 
 if TYPE_CHECKING:
     from bemcontact.problem.problem import Problem
+
+COINCIDE = 1e-6
+"""Distance of bonded edges over the size of the bodies that is round-off of coordinates."""
+SAMPLES = 33
+"""Places of an edge where the distance is measured."""
 
 
 def body_issues(problem: Problem) -> Iterator[Issue]:
@@ -88,6 +95,7 @@ def contact_issues(problem: Problem) -> Iterator[Issue]:
         yield from sides
         if not sides:
             yield from _pair_issues(problem, contact.between, (*path, "between"))
+    yield from _bond_issues(problem)
     for name, zone in problem.contact_zones.items():
         if isinstance(zone.surface, DeflectedContour):
             message = "a deflected contour is that of an only body; state this problem without bodies"
@@ -100,6 +108,37 @@ def contact_issues(problem: Problem) -> Iterator[Issue]:
                 yield Issue(path=("contact_zones", name, "edges", i), message=message)
     yield from _case_issues(problem, edges)
     yield from _tool_issues(problem)
+
+
+def _bond_issues(problem: Problem) -> Iterator[Issue]:
+    """Issues of bonded interfaces that name what does not exist, or what is in contact too."""
+    touching = {entry for contact in problem.contacts.values() for side in contact.between for entry in side}
+    touching |= {edge for zone in problem.contact_zones.values() for edge in zone.edges or ()}
+    seen: set[str] = set()
+    for name, between in problem.bonded.items():
+        path: KeyPath = ("bonded", name)
+        if name in problem.contacts or name in problem.contact_zones:
+            yield KeyIssue(path=path, message=f"a contact has the name '{name}' already; give another name")
+        sides = [issue for number in (0, 1) for issue in _side_issues(problem, between[number], path, number)]
+        yield from sides
+        if sides:
+            continue
+        yield from _pair_issues(problem, between, path)
+        for number, side in enumerate(between):
+            body = side[0].partition(SEPARATOR)[0]
+            if not problem.is_elastic(body):
+                message = f"'{body}' is rigid; hold the edges of the other body by a condition instead"
+                yield Issue(path=(*path, number), message=message)
+            for entry in side:
+                if SEPARATOR not in entry:
+                    message = f"name the edges of '{entry}' that are bonded, such as {entry}/EDGE"
+                    yield Issue(path=(*path, number), message=message)
+                elif entry in touching or entry in seen:
+                    where = "in contact too" if entry in touching else "bonded twice"
+                    yield Issue(
+                        path=(*path, number), message=f"edge '{entry}' is {where}; leave it out of one of the two"
+                    )
+                seen.add(entry)
 
 
 def _side_issues(problem: Problem, side: Sequence[str], path: KeyPath, number: int) -> Iterator[Issue]:
@@ -174,6 +213,16 @@ def _tool_issues(problem: Problem) -> Iterator[Issue]:
 def opposite_issues(problem: Problem) -> Iterator[Issue]:
     """Issues of contacts whose two sides cannot meet, and of meshes that would follow each other in a circle."""
     follows: dict[str, set[str]] = {}
+    for name, zone in problem.bonds.items():
+        for part in problem.opposite(name):
+            follows.setdefault(zone.surface.edges[part.onto].name, set()).add(part.edge)
+        away = _distance(problem, name)
+        if away is None or away > COINCIDE * problem.size:
+            sides = " and ".join(", ".join(side) for side in problem.bonded[name])
+            far = "nowhere opposite to each other" if away is None else f"{away:.3g} apart"
+            yield Issue(
+                path=("bonded", name), message=f"{sides} are {far}; bonded edges coincide: correct their points"
+            )
     for name, contact in problem.contacts.items():
         path: KeyPath = ("contacts", name, "between")
         surface, edges = problem.zones[name].surface, problem.edges_of(name)
@@ -202,6 +251,15 @@ def opposite_issues(problem: Problem) -> Iterator[Issue]:
         names = ", ".join(f"'{name}'" for name in circle)
         message = f"the meshes of {names} would follow each other in a circle; exchange the sides of one contact"
         yield Issue(path=("contacts",), message=message)
+
+
+def _distance(problem: Problem, bond: str) -> float | None:
+    """Largest distance [L] of bonded edges where they are opposite to each other; None if they are nowhere."""
+    surface, away = problem.bonds[bond].surface, list[float]()
+    for part in problem.opposite(bond):
+        places = problem.edge(part.edge).points(np.linspace(part.low, part.high, SAMPLES))
+        away.append(float(np.abs(surface.feet(places).gap).max()))
+    return max(away, default=None)
 
 
 def _circle(follows: dict[str, set[str]]) -> list[str]:

@@ -36,6 +36,9 @@ class Boundary(SpecModel):
     """The boundary of the body: an outer loop of edges, and loops around holes."""
 
     example: ClassVar[str] = "{outer: [{name: bottom, start: [0, 0]}, …]}"
+    other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("hole", "bore", "inner", "inside"), "holes is a list of holes, each a list of edges, clockwise"
+    )
 
     outer: LoopSpec
     """The edges of the outer loop, counterclockwise: the body is on the left."""

@@ -1,12 +1,13 @@
 """Contact zones, and the tools that move their rigid surfaces."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import fsum
 from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
 from bemcontact.problem.rigid_surface import DeflectedContour, SurfaceSpec
+from bemcontact.problem.surface_lines import LOADED
 from bemcontact.problem.validation import Name, Number, Point, SpecModel, invalid
 
 CANCELLED = 1e-14
@@ -36,6 +37,7 @@ class ContactZone(SpecModel):
     """Edges of the body that may touch a rigid surface without friction."""
 
     example: ClassVar[str] = "{edges: bottom, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}"
+    other_words: ClassVar[Mapping[str, str]] = LOADED
 
     edges: Annotated[Names | None, BeforeValidator(_unnamed), _SCHEMA] = Field(None, json_schema_extra={"default": ALL})
     """The name of the edge, or a list of names of edges, that may touch the surface. With `all`, or if it is left out,

@@ -260,7 +260,14 @@ def _moved(center: Point, distance: float, direction: Point) -> Point:
 
 AnyEdge = Line | Arc | EllipseArc
 """An edge of any shape."""
-EdgeSpec = Annotated[AnyEdge, TaggedUnion(what="an edge", members=get_args(AnyEdge), default="line")]
+OTHER_KINDS = {
+    "circle": "a full circle is kind: arc with center, radius and angles: [0, 360], and a hole has angles: [360, 0]",
+    "polyline": "give each straight piece as an edge of its own, with a name and its start",
+}
+"""Words that are no kinds of edges -> what to write instead."""
+EdgeSpec = Annotated[
+    AnyEdge, TaggedUnion(what="an edge", members=get_args(AnyEdge), default="line", other_kinds=OTHER_KINDS)
+]
 """An edge whose class is chosen by the key `kind`."""
 LoopSpec = Annotated[tuple[EdgeSpec, ...], Field(min_length=1)]
 """Edges in order: each edge starts at the end of the previous one, and the last one closes the loop."""

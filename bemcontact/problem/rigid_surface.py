@@ -123,5 +123,12 @@ Shape = Plane | Circle | Polyline | Spline
 """A rigid surface that has a gap at any point of the plane."""
 RigidSurface = Shape | DeflectedContour
 """The surface that the body may touch."""
-SurfaceSpec = Annotated[RigidSurface, TaggedUnion(what="a rigid surface", members=get_args(RigidSurface))]
+OTHER_KINDS = {
+    "line": "a straight surface is kind: plane, with a point and its normal into the body",
+    "arc": "a round surface is kind: circle, with center, radius and the side of the body",
+}
+"""Words that are no kinds of rigid surfaces -> what to write instead."""
+SurfaceSpec = Annotated[
+    RigidSurface, TaggedUnion(what="a rigid surface", members=get_args(RigidSurface), other_kinds=OTHER_KINDS)
+]
 """A rigid surface whose class is chosen by the key `kind`."""

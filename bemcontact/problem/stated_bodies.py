@@ -209,6 +209,11 @@ class StatedBodies(SpecModel):
             return ()
         return tuple(dict.fromkeys(surface.edges[part.onto].name for part in self.opposite(contact)))
 
+    def bonded_edges(self, bond: str) -> tuple[str, ...]:
+        """Names of the edges of both sides of a bonded interface."""
+        zone = self.bonds[bond]
+        return (*zone.edges, *(edge.name for edge in zone.surface.edges))
+
     def _held_edges(self) -> set[str]:
         """Names of the edges with a condition, in the problem or in a load case, and of bonded ones."""
         bonded = {name for sides in self.bonded.values() for side in sides for name in side}

@@ -1,8 +1,9 @@
 """Rigid surfaces along lines, polylines and splines: gap, normals, and the faces that hold points of a body."""
 
+from collections.abc import Mapping
 from functools import cached_property
 from itertools import pairwise
-from typing import Annotated, Literal, NamedTuple, Self
+from typing import Annotated, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 import scipy
@@ -57,8 +58,18 @@ class Faces(NamedTuple):
     faces: Array
 
 
+LOADED: Mapping[str, str] = dict.fromkeys(
+    ("force", "load", "moment", "displacement"),
+    "a rigid surface that is loaded or displaced is a tool: tools: {NAME: {zones: ZONE, force: {y: -400}}}, at the top "
+    "level",
+)
+"""Words that are no keys of a rigid surface or of its zone -> what to write instead."""
+
+
 class SmoothSurface(SpecModel):
     """A surface without corners: one face holds both sides of a point."""
+
+    other_words: ClassVar[Mapping[str, str]] = LOADED
 
     @cached_property
     def nearest(self) -> dict[Curve, tuple[float, ...]]:
@@ -77,6 +88,8 @@ class SmoothSurface(SpecModel):
 
 class Polyline(SpecModel):
     """A polygonal line with the body on its left; its first and last segments are infinite."""
+
+    other_words: ClassVar[Mapping[str, str]] = LOADED
 
     kind: Literal["polyline"] = "polyline"
     """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""

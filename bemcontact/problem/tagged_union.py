@@ -1,7 +1,7 @@
 """Unions of classes of which the key `kind` chooses one."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -23,11 +23,13 @@ class TaggedUnion:
     what : name of the thing with its article, for error messages
     members : classes of the union; the default of the key `kind` of each is its kind
     default : kind of a mapping without the key `kind`; if None, the key is required
+    other_kinds : words that are no kinds -> what to write instead
     """
 
     what: str
     members: tuple[type[SpecModel], ...]
     default: str | None = None
+    other_kinds: Mapping[str, str] = field(default_factory=dict[str, str])
 
     @property
     def example(self) -> str:
@@ -80,6 +82,8 @@ class TaggedUnion:
             return f"missing; give the kind of {self.what}: {', '.join(self.kinds)}"
         if not isinstance(kind := value["kind"], str):
             return f"expected one of {', '.join(self.kinds)}; found {described(kind)}"
+        if kind in self.other_kinds:
+            return f"unknown kind '{kind}'; {self.other_kinds[kind]}"
         message = unknown_word("kind", kind, self.kinds)
         return message if "there are" in message else f"{message} There are: {', '.join(self.kinds)}"
 

@@ -94,6 +94,13 @@ def _headline(design: GapDesign, units: Units) -> Iterator[tuple[str, str, str]]
         with_unit(number(design.lower_bound), units.stress),
         "for any profile within bounds",
     )
+    if design.von_mises is not None:
+        limit = "" if design.von_mises_limit is None else f", limit {number(design.von_mises_limit)}"
+        yield (
+            "Von Mises stress",
+            with_unit(number(design.von_mises), units.stress),
+            f"at most, at the given points{limit}",
+        )
     profile = design.profile[design.points]
     largest = float(np.abs(profile).max())
     low, high = (number(zero_if_negligible(float(end), largest)) for end in (profile.min(), profile.max()))

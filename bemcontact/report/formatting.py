@@ -72,6 +72,7 @@ def prescribed(problem: Problem, edge: Edge) -> Iterator[str]:
     for name in problem.zones:
         if edge.name in (*problem.edges_of(name), *problem.opposite_edges(name)):
             yield f"may touch in {name}"
+    yield from (f"bonded in {name}" for name in problem.bonded if edge.name in problem.bonded_edges(name))
     if edge.name in problem.edge_conditions:
         yield from _conditions(problem.edge_conditions[edge.name], edge, problem.units)
     for case, factor in problem.factors().items():
@@ -90,6 +91,19 @@ def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]
                 yield f"{symbol}_{axis} = {field_on(field, edge, unit)}"
     if condition.pressure is not None:
         yield f"pressure {field_on(condition.pressure, edge, units.stress)}"
+
+
+def materials_in_words(problem: Problem) -> list[str]:
+    """Constants of the material of each body, and the plane state: ``E = 210 N/mm², Poisson's ratio 0.3, plane strain``.
+
+    Several bodies have their names before it.
+    """
+    bodies: dict[str, list[str]] = {}
+    for part in problem.parts:
+        modulus = with_unit(f"{part.material.young_modulus:.9g}", problem.units.stress)
+        state, ratio = part.material.state.replace("_", " "), number(part.material.poisson_ratio)
+        bodies.setdefault(f"E = {modulus}, Poisson's ratio {ratio}, {state}", []).append(part.name)
+    return [f"{', '.join(names)}: {text}" if problem.several else text for text, names in bodies.items()]
 
 
 def volume_loads(problem: Problem) -> Iterator[str]:
@@ -179,6 +193,13 @@ def deflected_by(surface: DeflectedContour, problem: Problem) -> str:
         for name, condition in surface.conditions.items()
     ]
     return "; ".join([*conditions, *_volume_loads(surface.loads, problem.parts[0])])
+
+
+def problem_in_words(problem: Problem) -> list[str]:
+    """The paragraphs of its description, then the material and the loads on the volume."""
+    loads = "; ".join(volume_loads(problem))
+    given = f"Material: {'; '.join(materials_in_words(problem))}.{f' On the volume: {loads}.' if loads else ''}"
+    return [*paragraphs(problem.description), given]
 
 
 def paragraphs(text: str) -> list[str]:

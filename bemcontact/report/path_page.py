@@ -10,7 +10,7 @@ from bemcontact.report.breakpoints import breakpoint_words
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.formatting import (
     number,
-    paragraphs,
+    problem_in_words,
     sentence_case,
     vector,
     with_unit,
@@ -19,7 +19,7 @@ from bemcontact.report.formatting import (
 )
 from bemcontact.report.page import Picture, picture, template
 from bemcontact.report.path_verdicts import path_verdicts
-from bemcontact.report.verdicts import NOT_LOOKED_AT, overall
+from bemcontact.report.verdicts import BEYOND, NOT_LOOKED_AT, overall
 from bemcontact.version import __version__
 
 MOST_ROWS = 500
@@ -28,8 +28,8 @@ CAPTIONS = {
     "problem": "What was asked, at the end of the path",
     "peak": "Peak pressure; dots are breakpoints, hollow ones have an error larger than asked, or not known",
     "force": "Force of each rigid surface on the body",
-    "moment": "Moment of each rigid surface on the body, about (0, 0)",
-    "pressure": "Pressure along the contact zone, from the start of the path to its end",
+    "moment": "Moment of each rigid surface on the body, about (0, 0); errors of moments are not estimated",
+    "pressure": "Pressure along the contact zones at eight values, from the start of the path to its end",
 }
 """Name of a picture -> its caption."""
 
@@ -53,7 +53,7 @@ def render(path: ParameterPath, pictures: Mapping[str, bytes], problem: Problem 
         key=path.key,
         start=number(path.start),
         end=number(path.end),
-        description=paragraphs(problem.description) if problem else [],
+        description=problem_in_words(problem) if problem else [],
         surfaces=zone_surfaces(problem) if problem else [],
         pictures=[(name, _picture(name, svg, path, problem)) for name, svg in pictures.items()],
         zones=path.zones,
@@ -64,6 +64,7 @@ def render(path: ParameterPath, pictures: Mapping[str, bytes], problem: Problem 
         bars_are=BARS_ARE,
         not_looked_at=NOT_LOOKED_AT,
         notes=[f"{sentence_case(note)}." for note in path.notes],
+        notes_beyond=any(BEYOND in note for note in path.notes),
         spec=spec,
     )
 
@@ -77,7 +78,8 @@ def _headline(path: ParameterPath, units: Units) -> Iterator[tuple[str, str, str
     elif path.pressed:
         highest = max(path.pressed, key=lambda state: state.peak or 0.0)
         value = with_unit(with_bar(highest.peak or 0.0, highest.peak_bar), units.stress)
-        yield "Largest peak pressure", value, f"at {number(highest.value)}"
+        unknown = ", error not known" if highest.peak_bar is None else ""
+        yield "Largest peak pressure", value, f"at {number(highest.value)}{unknown}"
 
 
 def _rows(path: ParameterPath) -> Iterator[dict[str, Any]]:
@@ -100,4 +102,7 @@ def _picture(name: str, svg: bytes, path: ParameterPath, problem: Problem | None
     caption = CAPTIONS[kind] if kind in CAPTIONS else f"{path.zones[int(order) - 1]}: {ENDS}"
     if name == "problem" and problem is not None and problem.adapts:
         caption += "; the elements are those from which the search for a mesh begins"
+    if kind in ("force", "contact"):
+        assessed = any(state.bars for state in path.states)
+        caption += "; bars are errors at breakpoints" if assessed else "; errors are not known"
     return picture(svg, caption, f"{path.name}. {caption}.")

@@ -8,7 +8,7 @@ from bemcontact.report.breakpoints import breakpoint_words
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.formatting import number, plural
 from bemcontact.report.path_verdicts import path_verdicts
-from bemcontact.report.tables import list_of_facts, table_of
+from bemcontact.report.tables import add, list_of_facts, table_of
 from bemcontact.report.text import add_verdict
 
 
@@ -23,6 +23,8 @@ def path_summary(path: ParameterPath) -> RenderableType:
     counts = {"breakpoint": len(path.breakpoints), "pivot": path.pivots}
     how = ", ".join(f"{count} {plural(noun, count)}" for noun, count in counts.items())
     shown = list_of_facts()
+    for note in path.notes if path.certified else ():
+        add(shown, "Note", note)
     for verdict in path_verdicts(path):
         add_verdict(shown, verdict)
     return Group(Text(path.contact.name, "bold"), Text(f"{where}; {how}", "dim"), "", table, "", shown)

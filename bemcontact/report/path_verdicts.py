@@ -48,13 +48,13 @@ def _between_the_ends(path: ParameterPath) -> str:
 
 
 def path_sentence(path: ParameterPath) -> str:
-    """Certificate of a path in sentences."""
+    """Certificate of a path in sentences; where it is missing, the notes say why."""
     first, last = map(number, path.reaches)
     exact = f"The conditions of contact hold to {path.residual:.0e} at each breakpoint (natural residual)."
-    notes = (f"{sentence_case(note)}." for note in path.notes)
     if path.certified:
         proved = f"Each state from {first} to {last} is proved to be the only contact state. {exact}"
-        return " ".join((proved, *notes))
+        return proved
+    notes = (f"{sentence_case(note)}." for note in path.notes)
     deepest = () if path.penetration is None else (path.penetration.words,)
     where = () if path.penetrates_at is None else (f"This is at {path.key} = {number(path.penetrates_at)}.",)
     return " ".join((*deepest, *where, *notes, exact))

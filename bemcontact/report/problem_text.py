@@ -10,6 +10,7 @@ from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report.formatting import (
     case_in_words,
     deflected_by,
+    materials_in_words,
     number,
     prescribed,
     reference_in_words,
@@ -27,11 +28,8 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
     """List edges, zones, mesh, loads, supports and notes of a problem."""
     problem, mesh = checked.problem, checked.mesh
     units, shown = problem.units, list_of_facts()
-    for part in problem.parts:
-        material, of = part.material, f"{part.name}: " if part.name else ""
-        modulus = with_unit(number(material.young_modulus), units.stress)
-        ratio, state = number(material.poisson_ratio), material.state.replace("_", " ")
-        add(shown, "Material", f"{of}E = {modulus}, Poisson's ratio {ratio}, {state}")
+    for line in materials_in_words(problem):
+        add(shown, "Material", line)
     points = sum(map(len, checked.gaps.values()))
     add(shown, "Mesh", f"{len(mesh.elements)} elements, {len(mesh.nodes)} nodes, {points} contact points")
     add(shown, "Degrees of freedom", f"{mesh.degrees_of_freedom}")

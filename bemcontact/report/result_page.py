@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
 from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
@@ -17,24 +19,29 @@ from bemcontact.report.facts import (
     contact_intervals,
     coordinate_size,
     facts,
+    force_errors,
     peak_of,
     peak_place,
+    pressed_by,
     resolved_size,
     small,
     total_force,
 )
+from bemcontact.report.figures.load_cases import shown_cases
+from bemcontact.report.figures.stress import UNIFORM
 from bemcontact.report.formatting import (
     NEGLIGIBLE,
     JsonObject,
     number,
-    paragraphs,
+    problem_in_words,
     sentence_case,
     vector,
     with_unit,
+    zero_if_negligible,
     zone_surfaces,
 )
 from bemcontact.report.page import picture, template
-from bemcontact.report.verdicts import NOT_LOOKED_AT, case_verdicts, overall, result_verdicts
+from bemcontact.report.verdicts import BEYOND, NOT_LOOKED_AT, case_verdicts, overall, result_verdicts
 from bemcontact.report.zones import by_case, zone_rows
 from bemcontact.version import __version__
 
@@ -49,6 +56,8 @@ CAPTIONS = {
     "deformed": "{stress} on the deformed shape; the surfaces move with the magnification",
 }
 """Name of a picture -> its caption."""
+MOST_FORCES = 3
+"""Most contact zones whose forces are at the head of a page."""
 STRESSES = "{stress} on the deformed shape in each load case; all have one scale of colors and one magnification"
 """Caption of the picture "deformed" of load cases."""
 
@@ -72,11 +81,14 @@ def render(
     return template("result.html").render(
         name=first.contact.name if isinstance(results, Result) else results.name,
         version=__version__,
-        description=paragraphs(first.problem.description) if first.problem else [],
+        description=problem_in_words(first.problem) if first.problem else [],
         formulation=first.solution.formulation,
         verdicts=verdicts,
         overall=overall(verdicts),
-        headline=[*_headline(alone, units)] if alone else [],
+        headline=[
+            *(_headline(alone, units) if alone else _headline_of_cases(cases, units)),
+            *_most_stressed(cases, units),
+        ],
         details=[*facts(alone, units)] if alone else [],
         stresses=[(name, *row) for name, result in cases.items() for row in _stresses(result, units)],
         formulations=[] if comparisons is None else [*_formulations(comparisons)],
@@ -91,6 +103,7 @@ def render(
         assessed=any(result.accuracy.met is not None for result in cases.values()),
         not_looked_at=NOT_LOOKED_AT,
         pictures=[_picture(name, svg, results, stress) for name, svg in pictures.items()],
+        notes_beyond=any(BEYOND in note for result in cases.values() for note in result.notes),
         spec=spec,
     )
 
@@ -105,10 +118,49 @@ def _headline(record: JsonObject, units: Units) -> Iterator[tuple[str, str, str]
         yield "Contact", touching[0][1].split(", ends")[0], f"long, in {touching[0][0]}"
     elif touching:
         yield "Contact", f"{len(touching)} places", f"in {', '.join(dict.fromkeys(zone for zone, _ in touching))}"
-    yield "Force on the body", total_force(record, units), "of all surfaces"
+    yield from _forces(record, units)
     for bar in bars_of(record, "displacement"):
         where = bar["at"] and f"at {vector(bar['at'], units.length, scale=coordinate_size(record))}"
         yield "Largest displacement", with_unit(with_bar(bar["value"], bar["bar"]), units.length), where or ""
+
+
+def _forces(record: JsonObject, units: Units) -> Iterator[tuple[str, str, str]]:
+    """The force of all surfaces; of a few zones that press, the size of each, since theirs may cancel."""
+    zones = {zone: float(np.hypot(*force)) for zone, force in record["forces"].items()}
+    pressing = {zone: size for zone, size in zones.items() if zero_if_negligible(size, pressed_by(record))}
+    if not 1 < len(pressing) <= MOST_FORCES:
+        yield "Force on the body", total_force(record, units), "of all surfaces"
+        return
+    for zone, size in pressing.items():
+        errors = force_errors(record, zone)
+        value = with_bar(size, sum(errors) / size if errors else None)
+        yield f"Force of {zone}", with_unit(value, units.line_force), ""
+
+
+def _headline_of_cases(cases: Mapping[str, Result], units: Units) -> Iterator[tuple[str, str, str]]:
+    """The largest pressure of all load cases, and their number."""
+    infinite = [name for name, result in cases.items() if result.accuracy.infinite]
+    name = max(cases, key=lambda name: float(cases[name].solution.pressure.max()))
+    if infinite:
+        all_of_them = len(infinite) == len(cases)
+        yield "Largest pressure", "infinite", "in every load case" if all_of_them else f"under {', '.join(infinite)}"
+    elif cases[name].footprint.peak is not None:
+        yield "Largest pressure", peak_of(cases[name].to_dict(), units), f"under {name}"
+    yield "Load cases", f"{len(cases)}", "with combinations"
+
+
+def _most_stressed(cases: Mapping[str, Result], units: Units) -> Iterator[tuple[str, str, str]]:
+    """The largest von Mises stress of all load cases."""
+    largest = {name: result.largest_stresses() for name, result in cases.items() if result.boundary is not None}
+    for name, peaks in largest.items():
+        if len(peaks.singular):
+            yield "Largest von Mises stress", "infinite", f"at corners or edges{name and f', under {name}'}"
+            return
+    known = [(peak, name) for name, peaks in largest.items() for peak in (peaks.inside, peaks.boundary) if peak]
+    if known:
+        peak, name = max(known, key=lambda item: item[0].value)
+        where = "on the boundary" if peak is largest[name].boundary else "inside"
+        yield "Largest von Mises stress", _stress(peak, units), f"{where}{name and f', under {name}'}"
 
 
 def _stresses(result: Result, units: Units) -> Iterator[tuple[str, str, str]]:
@@ -117,6 +169,10 @@ def _stresses(result: Result, units: Units) -> Iterator[tuple[str, str, str]]:
         return
     largest = result.largest_stresses()
     size = float(abs(result.boundary.points).max())
+    everywhere = result.triangulated.stress.measured(StressMeasure.VON_MISES)
+    if not len(largest.singular) and largest.boundary and np.ptp(everywhere) <= UNIFORM * everywhere.max():
+        yield "von Mises", _stress(largest.boundary, units), "the same all over the body"
+        return
     for zone, peak in largest.shear.items():
         if peak is not None:
             depth = with_unit(number(peak.depth), units.length)
@@ -217,8 +273,12 @@ def _picture(name: str, svg: bytes, results: Result | CaseResults, stress: Stres
     caption = of_zone if number or name not in CAPTIONS else CAPTIONS[name]
     shows = first.contact.name
     if isinstance(results, CaseResults) and name != "problem":
-        shows = f"{results.name}: {', '.join(cases)}"
+        drawn = shown_cases(results) if name in ("contacts", "deformed") else [*cases]
+        shows = f"{results.name}: {', '.join(drawn)}"
         caption = STRESSES if name == "deformed" else caption
+        if len(drawn) < len(cases):
+            most = f"the {len(drawn)} of {len(cases)} load cases with the largest forces"
+            caption = caption.replace("each load case", most)
     if name == "problem" and first.problem is not None and first.problem.case is not None:
         caption = f"{caption}; with the loads of {first.problem.case}"
     caption = caption.replace("{stress}", stress.words if number else sentence_case(stress.words))

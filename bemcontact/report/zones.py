@@ -23,6 +23,7 @@ from bemcontact.report.facts import (
     zone_forces,
 )
 from bemcontact.report.formatting import vector, with_unit, zero_if_negligible
+from bemcontact.report.peak_places import level_zones
 
 ZONE_COLUMNS = (
     "case", "zone", "interval", "start_x", "start_y", "end_x", "end_y", "end_error", "length", "length_error", "peak",
@@ -70,8 +71,10 @@ def _peak(record: JsonObject, zone: str, units: Units) -> str:
         return "infinite"
     own = [i for i, name in enumerate(record["zone"]) if name == zone]
     highest = max(own, key=lambda i: record["pressure"][i])
-    place = vector(record["nodes"][highest], units.length, scale=resolved_size(record))
     value = with_bar(record["pressure"][highest], None if bar is None else bar["bar"])
+    if zone in level_zones(record, 1.0):
+        return f"{with_unit(value, units.stress)} all along"
+    place = vector(record["nodes"][highest], units.length, scale=resolved_size(record))
     return f"{with_unit(value, units.stress)} at {place}"
 
 

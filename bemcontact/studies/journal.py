@@ -66,7 +66,7 @@ class Journal:
 @contextmanager
 def opened(folder: Path) -> Iterator[Journal]:
     """Open the journal in a folder, which is made; `ProblemError` if another run writes to it."""
-    folder.mkdir(exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
     path = folder / JOURNAL
     with path.open("ab") as file:
         _lock(file, folder)

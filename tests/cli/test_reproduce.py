@@ -62,7 +62,7 @@ def test_reproduction_that_fails_ends_with_status_1(monkeypatch: pytest.MonkeyPa
         (("--refine", "0"), "the refinement must be a whole number of at least 1"),
         (("--refine", "2,2"), "the refinements must be different"),
         (("--out", "full"), "which is not part of a reproduction; name a new"),
-        (("--out", "none/paper"), "there is no directory"),
+        (("--out", "full/report.json/paper"), "is a file, and can hold no folder"),
         (("--out", "full", "--json", "full/n.json"), "--out full would replace full/n.json"),
         (("--json", "none/x.json"), "--json"),
     ],

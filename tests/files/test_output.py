@@ -228,17 +228,28 @@ def test_a_killed_run_leaves_the_old_folder_or_the_new_one(tmp_path: Path):
     assert int(done.stdout) > 1  # children did get as far as a new folder; how many depends on the machine
 
 
-def test_a_place_for_a_folder_is_left_untouched(tmp_path: Path):
-    output.ensure_folder_place(tmp_path / "report")
+@pytest.mark.parametrize("place", ["report", "new/and new/report"])
+def test_a_place_for_a_folder_is_left_untouched(tmp_path: Path, place: str):
+    output.ensure_folder_place(tmp_path / place)
     assert [*tmp_path.iterdir()] == []
+
+
+def test_folders_above_a_folder_are_made_and_remain_only_if_it_is_written(tmp_path: Path):
+    folder = tmp_path / "new" / "and new" / "report"
+    with pytest.raises(ValueError, match="stopped"), output.whole_folder(folder):
+        raise ValueError("stopped")
+    assert [*tmp_path.iterdir()] == []
+    with output.whole_folder(folder) as temporary:
+        (temporary / "page.html").touch()
+    assert [*tmp_path.rglob("*.html")] == [folder / "page.html"]
 
 
 def test_a_place_that_can_take_no_folder_is_refused_with_the_reason(tmp_path: Path):
     (tmp_path / "a.txt").touch()
     with pytest.raises(OSError, match="is a file; name a folder"):
         output.ensure_folder_place(tmp_path / "a.txt")
-    with pytest.raises(OSError, match="there is no directory"):
-        output.ensure_folder_place(tmp_path / "none" / "report")
+    with pytest.raises(OSError, match=r"a\.txt is a file, and can hold no folder"):
+        output.ensure_folder_place(tmp_path / "a.txt" / "none" / "report")
     with pytest.raises(OSError, match="cannot be written: File name too long"):
         output.ensure_folder_place(tmp_path / ("a" * 250))
     with pytest.raises(OSError, match="is the current directory or contains it"):

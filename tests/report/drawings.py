@@ -5,8 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch
+from scipy.spatial import KDTree
 
 from bemcontact.problem import Problem
 
@@ -50,10 +53,39 @@ def beam_over_a_circle() -> Problem:
     )  # pyright: ignore
 
 
+def seal_in_a_groove() -> Problem:
+    """A round body pressed on a floor by a loaded lid; it stands beside a wall, and touches it without pressure."""
+    ring = {"kind": "arc", "name": "ring", "center": [0, 0], "radius": 2, "angles": [0, 360], "elements": 32}
+    planes = {"floor": ([0, -2], [0, 1]), "wall": ([-2, 0], [1, 0]), "lid": ([0, 2], [0, -1])}
+    return Problem(
+        name="seal",
+        material={"young_modulus": 100, "poisson_ratio": 0.3},
+        boundary={"outer": [ring]},
+        contact_zones={
+            name: {"edges": "ring", "surface": {"kind": "plane", "point": point, "normal": normal}}
+            for name, (point, normal) in planes.items()
+        },
+        tools={"lid": {"zones": "lid", "point": [0, 2], "force": {"y": -5}}},
+    )  # pyright: ignore
+
+
 def strokes(axes: Axes) -> Iterator[np.ndarray]:
     for collection in axes.collections:
         if isinstance(collection, LineCollection):
             yield from map(np.asarray, collection.get_segments())
+
+
+def outlines(axes: Axes, color: str) -> np.ndarray:
+    """All points of the outlines of bodies in a color."""
+    patches = (
+        patch for patch in axes.patches if isinstance(patch, PathPatch) and patch.get_edgecolor() == to_rgba(color)
+    )
+    return np.concatenate([np.asarray(patch.get_path().vertices) for patch in patches])
+
+
+def off(points: np.ndarray, line: np.ndarray) -> float:
+    """The largest distance of a point (..., 2) from the nearest of those of a line (j, 2)."""
+    return float(KDTree(line).query(points.reshape(-1, 2))[0].max())
 
 
 def only_axes(figure: Figure) -> Axes:

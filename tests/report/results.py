@@ -1,13 +1,17 @@
 """Results for tests of pages, tables and folders: of one load, of load cases, infinite, condensed."""
 
 from functools import cache
+from pathlib import Path
 
 from mesh_studies import punch, roller
 from tool_problems import FREE, FREE_CASES, made
 
 import bemcontact
+from bemcontact import GapDesign, ParameterPath
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
+
+MODELS = Path(__file__).parents[2] / "models"
 
 
 @cache
@@ -32,6 +36,21 @@ def condensed() -> Result:
 def cases() -> CaseResults:
     """A block between tools under load cases."""
     return bemcontact.solve_cases(made(FREE, **FREE_CASES))
+
+
+@cache
+def followed() -> ParameterPath:
+    """A roller on a plane that is pressed more and more."""
+    return bemcontact.follow(roller(), "conditions.top.pressure", 1.0, 0.0)
+
+
+@cache
+def designed() -> GapDesign:
+    """A relief of a flat punch, with a limit of stress that it reaches."""
+    problem = bemcontact.load(MODELS / "gallery" / "flat_punch.yaml", variant="stated mesh")
+    operator = bemcontact.stress_operator(problem, [[2.0, -2.0]])
+    bounds = bemcontact.Relief(lower=0, upper=0.01, slope=0.003)
+    return bemcontact.design_gap(operator.contact, bounds, stress=operator, von_mises=95)
 
 
 EACH = {"roller": rolled, "punch": punched, "condensed": condensed, "cases": cases}

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from page_reader import ensure_self_contained, read
+from results import designed
 
 import bemcontact
 from bemcontact import GapDesign, Relief, design_gap
@@ -91,3 +92,11 @@ def test_a_surface_that_cannot_be_written_is_no_obstacle():
     ring = replace(proved.before[0].contact, run_length=np.array([3.0]))
     page = read(render(replace(proved, before=(replace(proved.before[0], contact=ring), proved.before[1])), {})).text
     assert "goes round or is in pieces" in page
+
+
+def test_stress_and_its_limit_are_at_the_head():
+    """The limit of 95 N/mm² is kept to a millionth, where it is reached."""
+    text = read(render(designed(), {})).text
+    assert designed().von_mises == pytest.approx(95, rel=1e-6)
+    assert "Von Mises stress95 N/mm² at most, at the given points, limit 95" in text
+    assert "Von Mises stress" not in read(render(uncoupled(), {})).text

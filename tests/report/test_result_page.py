@@ -1,12 +1,15 @@
 """The page of a result: whole, with its numbers, and what is proved, estimated and not looked at apart."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from page_reader import ensure_self_contained, read
 from results import EACH, cases, condensed, punched, rolled
 from tool_problems import FREE, FREE_CASES, made
 
+import bemcontact
 from bemcontact.analysis.case_comparisons import compare_cases
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
@@ -14,9 +17,11 @@ from bemcontact.options import ComparisonOptions, StressMeasure
 from bemcontact.report.bars import NOTHING
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import peak_of, total_force
-from bemcontact.report.figures import pictures_of, vector_graphic
+from bemcontact.report.figures import load_cases, pictures_of, vector_graphic
 from bemcontact.report.result_page import NOT_LOOKED_AT, render
 from bemcontact.report.zones import zone_rows
+
+GALLERY = Path(__file__).parents[2] / "models" / "gallery"
 
 
 def together(text: str) -> str:
@@ -118,3 +123,54 @@ def test_formulations_are_compared_under_each_load_case():
         (contender,) = level.comparison.contenders
         assert f"{case}QP3{together(contender.verdict.outcome)}" in text
     assert text.index("LoadcaseEquations") < text.index("LoadcaseFormulation")
+
+
+def test_the_head_has_the_force_of_each_zone_and_the_largest_stress():
+    """The forces of a press and a table cancel, so that their sum says nothing: 6000 N/mm each, by statics."""
+    problem = bemcontact.load(GALLERY / "body_between_two_tools.yaml").with_case("raised")
+    text = read(render(bemcontact.solve(problem), {}, None)).text
+    head = text[: text.index("Equations:")]
+    assert re.search(r"Force of table ?6000\.0*( ± \S+)? N/mm", head)
+    assert re.search(r"Force of press ?6000\.0*( ± \S+)? N/mm", head)
+    assert re.search(r"Largest von Mises stress ?88\.8\d* ± ", head)  # 100 N/mm² and ν of it across
+    assert "the same all over the body" in text
+    assert "shear below table" not in text
+    assert "Material: E = 210000 N/mm², Poisson's ratio 0.3, plane strain." in text
+    assert "stressinfinite at corners or edges" in read(render(punched(), {}, None)).text
+
+
+def test_the_head_says_that_notes_go_beyond_the_error_bars():
+    result = replace(rolled(), notes=("strains are not small; error bars do not include this",))
+    head, _, rest = render(result, {}, None).partition("<main>")
+    assert 'Error bars do not include everything:</strong> see <a href="#notes">the note</a>' in head
+    assert '<h3 id="notes">' in rest
+    assert "#notes" not in render(replace(rolled(), notes=()), {}, None)
+
+
+def test_the_head_of_load_cases_has_the_largest_pressure_of_all():
+    results = cases().results
+    most = max(results, key=lambda name: results[name].solution.pressure.max())
+    head = read(render(cases(), {}, None)).text.partition("Equations:")[0]
+    peak = peak_of(results[most].to_dict(), units_of(results[most].contact))
+    assert f"Largest pressure{peak} under {most}" in head
+    assert f"Load cases{len(results)}" in head
+
+
+def test_a_caption_counts_the_load_cases_that_are_drawn(monkeypatch: pytest.MonkeyPatch):
+    """Of many load cases only those with the largest forces have pictures, and the alternative names only these."""
+    monkeypatch.setattr(load_cases, "MOST", 1)
+    (shown,) = load_cases.shown_cases(cases())
+    page = render(cases(), {"contacts": b"<svg/>", "pressure-1": b"<svg/>"}, None)
+    some = f"the 1 of {len(cases().results)} load cases with the largest forces"
+    assert f"Where the body touches in {some}" in page
+    assert f'alt="{cases().name}: {shown}. Where' in page
+    assert f'alt="{cases().name}: {", ".join(cases().results)}. ' in page  # all have their pressures drawn
+
+
+def test_letters_of_all_pictures_have_one_size():
+    """A picture that is half as wide as others fills half of its place."""
+    (share,) = re.findall(
+        r'<img style="width: (\d+)%"',
+        render(rolled(), {"contact": b'<svg width="192.5pt"/>', "gap-1": b"<svg/>"}, None),
+    )
+    assert int(share) == 50

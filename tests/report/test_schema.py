@@ -9,6 +9,7 @@ import schemas
 from contact_problems import random_contact
 from jsonschema import ValidationError
 from mesh_studies import punch, roller
+from results import designed
 
 import bemcontact
 from bemcontact.analysis import compare as comparing
@@ -104,7 +105,7 @@ def of_each_kind() -> dict[str, list[Any]]:
         "load_path": [bemcontact.load_path(loose, CondensedContact.from_compliance(np.eye(2), [-1.0, 1.0]))],
         "sensitivities": [bemcontact.sensitivities(roller(), ["conditions.top.pressure"])],
         "starts": [bemcontact.random_starts(contact, "qp1", count=2)],
-        "design": [bemcontact.design_gap(contact, relief)],
+        "design": [bemcontact.design_gap(contact, relief), designed()],
     }
 
 

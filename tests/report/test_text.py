@@ -58,7 +58,7 @@ def printed(renderable: RenderableType, width: int = 100) -> str:
 def test_problem_summary_states_the_facts():
     lines = printed(problem_text.problem_summary(check(block()))).splitlines()
     facts = {line[:20].strip(): line[20:].strip() for line in lines if line[18:20] == "  "}
-    assert facts["Material"] == "E = 2.1e+05 N/mm², Poisson's ratio 0.3, plane strain"
+    assert facts["Material"] == "E = 210000 N/mm², Poisson's ratio 0.3, plane strain"
     assert facts["Mesh"] == "8 elements, 16 nodes, 5 contact points"
     assert facts["Degrees of freedom"] == "32"
     assert facts["Total load"] == "(0, -120) N/mm, without reactions"  # 3 N/mm² on 40 mm

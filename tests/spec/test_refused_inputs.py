@@ -66,6 +66,9 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
         (PLANE, "{kind: plane, point: [0, 0], normal: [0, 0]}"),
         (PLANE, "{kind: plane, point: [0, 0]}"),
         (PLANE, "{kind: wall}"),
+        (PLANE, "{kind: line, point: [0, 0], normal: [0, 1]}"),
+        (PLANE, "{kind: plane, point: [0, 0], normal: [0, 1], force: [0, 500]}"),
+        ("- {name: top, start: [40, 20], elements: 4}", "- {name: top, kind: circle, center: [20, 20], radius: 20}"),
     ],
     "Geometry": [
         ("start: [40, 20]", "start: [40, 0]"),

@@ -12,9 +12,9 @@ from bemcontact.report.figures.design import (
     figure_of_design,
     figures_of_design,
 )
-from bemcontact.report.figures.load_cases import draw_case_pressures, figure_of, figure_of_cases, pictures_of
+from bemcontact.report.figures.load_cases import draw_case_pressures, figure_of_cases
 from bemcontact.report.figures.mesh_study import draw_convergence, draw_history, figures_of
-from bemcontact.report.figures.page import FORMATS, ensure_known_format, save, vector_graphic
+from bemcontact.report.figures.page import FORMATS, ensure_known_format, save
 from bemcontact.report.figures.path import (
     draw_interval_ends,
     draw_moments,
@@ -24,6 +24,7 @@ from bemcontact.report.figures.path import (
     figure_of_path,
     figures_of_path,
 )
+from bemcontact.report.figures.pictures import figure_of, pictures_of
 from bemcontact.report.figures.problem import draw_problem, figure_of_problem
 from bemcontact.report.figures.reproduction import draw_against, figures_of_reproduction
 from bemcontact.report.figures.result import (
@@ -33,6 +34,7 @@ from bemcontact.report.figures.result import (
 )
 from bemcontact.report.figures.stress import fill_with_stress
 from bemcontact.report.figures.study import draw_output, figures_of_study
+from bemcontact.report.figures.vector_graphic import vector_graphic
 
 __all__ = [
     "FORMATS",

@@ -256,8 +256,9 @@ def _draw_fan(axes: Axes, fan: Fan, tips: Array, spacing: float) -> None:
 
 def _fans(result: Result, state: BoundaryState) -> Iterator[Fan]:
     """The stretches of the contact zones that carry pressure, each with an open point at either end."""
-    contact, touching = result.contact, result.touching
-    pressure = np.where(touching, result.solution.pressure, 0.0)
+    contact, solution = result.contact, result.solution
+    touching = contact.pressed(solution.pressure, solution.displacement)
+    pressure = np.where(touching, solution.pressure, 0.0)
     nodes, moved = state.points.reshape(-1, 2), (state.points + state.displacement).reshape(-1, 2)
     places = dict(zip(map(tuple, nodes.tolist()), moved, strict=True))
     feet = np.array([places[x, y] for x, y in contact.points.tolist()])
@@ -331,7 +332,7 @@ def outline_of(state: BoundaryState, curves: Array) -> Path:
 def loops_of(state: BoundaryState, curves: Array) -> list[Array]:
     """Split curves (m, c, 2) where one loop of elements ends and the next begins."""
     first, breaks = 0, list[int]()
-    for element, (start, *_, end) in enumerate(state.points):
+    for element, end in enumerate(state.points[:, 2]):
         if (end == state.points[first, 0]).all():  # the next loop may begin at the same place, on another body
             first = element + 1
             breaks.append(first)

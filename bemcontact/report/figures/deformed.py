@@ -16,7 +16,7 @@ from bemcontact.report.figures.contact import OVERHANG, body_extent, outline_of
 from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain
 from bemcontact.report.figures.stress import fill_with_stress
 from bemcontact.report.figures.surfaces import reach_through, surfaces_of
-from bemcontact.report.figures.symbols import draw_ground
+from bemcontact.report.figures.symbols import draw_ground, joined
 from bemcontact.report.formatting import with_unit
 
 MAGNIFIED = 0.05
@@ -61,9 +61,10 @@ def draw_shape(axes: Axes, result: Result, factor: float) -> BoundaryState:
         raise ValueError("the result of a condensed problem has no boundary to draw")
     before = element_curves(state.points, 9)
     after = element_curves(state.points + factor * state.displacement, 9)
-    axes.add_collection(LineCollection(list(before), colors=GREY, linewidths=0.9, linestyles="dashed", zorder=2))
-    axes.add_collection(LineCollection(list(after), colors=BLACK, linewidths=1.8, zorder=3))
-    axes.add_patch(PathPatch(outline_of(state, after), facecolor=BODY, edgecolor="none", zorder=0))
+    shape, dashed = outline_of(state, after), outline_of(state, before)
+    axes.add_patch(PathPatch(shape, facecolor=BODY, edgecolor="none", zorder=0))
+    axes.add_patch(PathPatch(dashed, facecolor="none", edgecolor=GREY, linewidth=0.9, linestyle="dashed", zorder=2))
+    axes.add_patch(PathPatch(shape, facecolor="none", edgecolor=BLACK, linewidth=1.8, zorder=3))
     _draw_touching(axes, result, state, after)
     covered = [before.reshape(-1, 2), after.reshape(-1, 2)]
     size = float(np.hypot(*body_extent(state)))
@@ -76,12 +77,17 @@ def draw_shape(axes: Axes, result: Result, factor: float) -> BoundaryState:
 
 
 def _draw_touching(axes: Axes, result: Result, state: BoundaryState, after: Array) -> None:
-    """Draw the half elements with pressure at both nodes, of curves (m, 9, 2), as thick lines with dots."""
+    """Draw the half elements with pressure at both nodes, of curves (m, 9, 2), as thick lines; other nodes as dots."""
     carrying = {tuple(point) for point in result.contact.points[result.touching].tolist()}
     touching = np.array([[tuple(node) in carrying for node in element] for element in state.points.tolist()])
-    halves = [*after[touching[:, 0] & touching[:, 1], :5], *after[touching[:, 1] & touching[:, 2], 4:]]
+    between = touching[:, :-1] & touching[:, 1:]
+    halves = joined(np.stack([after[:, :5], after[:, 4:]], axis=1)[between])
     axes.add_collection(LineCollection(halves, colors=VERMILION, linewidths=3.5, capstyle="round", zorder=4))
-    axes.scatter(*after[:, ::4][touching].T, s=10, color=VERMILION, zorder=4)
+    alone = touching.copy()
+    alone[:, :-1] &= ~between
+    alone[:, 1:] &= ~between
+    if alone.any():
+        axes.scatter(*after[:, ::4][alone].T, s=10, color=VERMILION, zorder=4)
 
 
 def magnification(results: Sequence[Result]) -> float:

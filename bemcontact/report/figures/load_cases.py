@@ -14,12 +14,10 @@ from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.contact import (
     body_extent,
     close_ups,
-    draw_contact,
     setting_of,
     sketch_contact,
 )
-from bemcontact.report.figures.deformed import draw_deformed, draw_shape, in_words, magnification
-from bemcontact.report.figures.mesh_study import plan_of
+from bemcontact.report.figures.deformed import draw_shape, in_words, magnification
 from bemcontact.report.figures.page import (
     GREY,
     PIECE_COLOURS,
@@ -37,10 +35,7 @@ from bemcontact.report.figures.result import (
     PANELS,
     ROW,
     WIDE,
-    draw_gap,
-    draw_pressure,
     entitle,
-    figure_of_result,
     of_zone,
     show_around,
 )
@@ -61,16 +56,11 @@ ENVELOPE = "largest of all"
 """Name of the envelope in legends."""
 
 
-def figure_of(results: Result | CaseResults, stress: StressMeasure = StressMeasure.VON_MISES) -> Figure:
-    """Compose the page of a result, or of the results of all load cases, with contours of a stress."""
-    return figure_of_result(results, stress) if isinstance(results, Result) else figure_of_cases(results, stress)
-
-
 def figure_of_cases(cases: CaseResults, stress: StressMeasure = StressMeasure.VON_MISES) -> Figure:
     """Compose a page with contact and stress of each load case, and the pressures of all with their envelope."""
     shown, first = shown_cases(cases), next(iter(cases.results.values()))
     panels = panels_of(first)
-    columns, rows, height = _grid(shown, first)
+    columns, rows, height = grid_of(shown, first, INCHES)
     bodies = 2 * [rows * height] if rows else []
     heights = [*bodies, ROW * len(panels)]
     figure = new_page(INCHES, 0.8 + sum(heights))
@@ -79,35 +69,12 @@ def figure_of_cases(cases: CaseResults, stress: StressMeasure = StressMeasure.VO
         draw_case_pressures(below.add_subplot(len(panels), 1, row + 1), cases, zone)
     entitle(figure, f"{wrapped(cases.name, 6 * INCHES)}: all load cases", case_verdicts(cases), 9 * INCHES)
     if above:
-        draw_case_contacts(_places(above[0], shown, rows, columns), cases, shown)
-        draw_case_stresses(_places(above[1], shown, rows, columns), cases, shown, stress)
+        draw_case_contacts(places_of(above[0], shown, rows, columns), cases, shown)
+        draw_case_stresses(places_of(above[1], shown, rows, columns), cases, shown, stress)
     return figure
 
 
-def figure_of_contacts(cases: CaseResults) -> Figure:
-    """Compose a picture with the contact of each load case alone."""
-    shown = shown_cases(cases)
-    figure, places = _small_multiples(cases, shown)
-    draw_case_contacts(places, cases, shown)
-    return figure
-
-
-def figure_of_stresses(cases: CaseResults, stress: StressMeasure = StressMeasure.VON_MISES) -> Figure:
-    """Compose a picture with the stress on the deformed shape of each load case alone."""
-    shown = shown_cases(cases)
-    figure, places = _small_multiples(cases, shown)
-    draw_case_stresses(places, cases, shown, stress)
-    return figure
-
-
-def _small_multiples(cases: CaseResults, shown: Sequence[str]) -> tuple[Figure, list[Axes]]:
-    """A page with axes for each load case."""
-    columns, rows, height = _grid(shown, next(iter(cases.results.values())))
-    figure = new_page(INCHES * min(1.0, columns / 3), rows * height)
-    return figure, _places(figure, shown, rows, columns)
-
-
-def _places(figure: Figure | SubFigure, shown: Sequence[str], rows: int, columns: int) -> list[Axes]:
+def places_of(figure: Figure | SubFigure, shown: Sequence[str], rows: int, columns: int) -> list[Axes]:
     """Axes for each load case, row by row."""
     return [figure.add_subplot(rows, columns, place) for place in range(1, len(shown) + 1)]
 
@@ -130,13 +97,13 @@ def shown_cases(cases: CaseResults) -> list[str]:
     return [name for name in cases.results if name in most]
 
 
-def _grid(shown: Sequence[str], first: Result) -> tuple[int, int, float]:
-    """Columns, rows, and inches of a row of the pictures of so many load cases."""
+def grid_of(shown: Sequence[str], first: Result, inches: float) -> tuple[int, int, float]:
+    """Columns, rows, and inches of a row of the pictures of so many load cases, side by side in a width in inches."""
     if not shown or first.boundary is None:
         return 1, 0, 0.0
     width, height = body_extent(first.boundary)
-    columns = min(len(shown), 2 if width > 2 * WIDE * height else 3)
-    return columns, -(-len(shown) // columns), float(np.clip(0.9 * INCHES / columns * height / width + 1.0, 2.0, 4.5))
+    columns = 2 if len(shown) in (2, 4) or width > 2 * WIDE * height else min(len(shown), 3)
+    return columns, -(-len(shown) // columns), float(np.clip(0.9 * inches / columns * height / width + 1.0, 1.8, 4.5))
 
 
 def draw_case_contacts(places: Sequence[Axes], cases: CaseResults, shown: Sequence[str]) -> None:
@@ -148,7 +115,7 @@ def draw_case_contacts(places: Sequence[Axes], cases: CaseResults, shown: Sequen
     zone = _close_zone(results)
     setting = setting_of(results, zone)
     for axes, name, result in zip(places, shown, results, strict=True):
-        axes.set_title(f"{short_label(name, 30)}: {_peak(result)}", loc="left", fontsize=10)
+        axes.set_title(f"{short_label(name, 30)}\n{_peak(result)}", loc="left", fontsize=9)
         sketch_contact(axes, result, zone, setting)  # there is no room for more numbers
     _align(places, framed=zone is not None)
 
@@ -164,12 +131,12 @@ def draw_case_stresses(places: Sequence[Axes], cases: CaseResults, shown: Sequen
     for axes, name, result in zip(places, shown, results, strict=True):
         draw_shape(axes, result, factor)
         drawn, words = fill_body(axes, result, scale, factor)
-        title = short_label(name, 40)
+        title = short_label(name, 30)
         if words == SAME:
             title = f"{title}\n{words}"
         else:
             marked[words] = None
-        axes.set_title(title, loc="left", fontsize=10)
+        axes.set_title(title, loc="left", fontsize=9)
         if axes is places[-1]:
             add_bar(places, drawn, result, scale)
     _align(places, framed=False)
@@ -223,7 +190,7 @@ def draw_case_pressures(axes: Axes, cases: CaseResults, zone: str | None = None)
         )  # fmt: skip
     for order, (name, result) in enumerate(results.items()):
         color = PIECE_COLOURS[order % len(PIECE_COLOURS)]
-        width = 2.2 if order < len(PIECE_COLOURS) else 1.2
+        width = 1.4 + 3.6 * (1 - (order + 1) / len(results))  # so that each of equal curves is seen
         for number, piece in enumerate(pieces):
             label, dashes = None if number else short_label(name, 30), DASHES[number % len(DASHES)]
             pressure = result.solution.pressure[piece.index]
@@ -248,61 +215,3 @@ def draw_case_pressures(axes: Axes, cases: CaseResults, zone: str | None = None)
         )
         zones = dict.fromkeys(name for it in results.values() for name in it.accuracy.infinite if zone in (None, name))
         cut_off(axes, max(tops), [*zones])
-
-
-WIDTH = 5.4
-"""Inches of a picture on a page: its text can be read on a telephone, and two stand side by side."""
-
-
-def pictures_of(results: Result | CaseResults, stress: StressMeasure = StressMeasure.VON_MISES) -> dict[str, Figure]:
-    """Make the pictures for the page of a result or of all load cases, by name.
-
-    Names are "problem", "contact" or "contacts", and "deformed" (if a body is known), and for each zone "pressure-1",
-    and of a result "gap-1", and "contact-1" if it needs a close-up; "pressure" if there are too many zones.
-    """
-    first = results if isinstance(results, Result) else next(iter(results.results.values()))
-    figures, near = dict[str, Figure](), [] if isinstance(results, CaseResults) else close_ups(results)
-    if first.problem is not None:
-        figures["problem"] = plan_of(first.problem)
-    if isinstance(results, CaseResults):
-        if shown_cases(results):
-            figures["contacts"] = figure_of_contacts(results)
-            figures["deformed"] = figure_of_stresses(results, stress)
-    elif first.boundary is not None:
-        figures["contact"], axes = _page(first)
-        draw_contact(axes, first)
-        figures["deformed"], axes = _page(first)
-        draw_deformed(axes, first, stress)
-    zones = [*first.contact.zone_names]
-    for zone in panels_of(first):
-        number = f"-{zones.index(zone or zones[0]) + 1}" if zone or len(zones) == 1 else ""
-        if (zone or zones[0]) in near and number:
-            figures[f"contact{number}"], axes = _page()
-            draw_contact(axes, first, zone or zones[0], stress=stress)
-        figures[f"pressure{number}"], axes = _page(height=3.6)
-        if isinstance(results, CaseResults):
-            draw_case_pressures(axes, results, zone)
-            _legend_outside(axes)
-            continue
-        draw_pressure(axes, results, zone)
-        figures[f"gap{number}"], axes = _page(height=3.6)
-        draw_gap(axes, results, zone)
-    return figures
-
-
-def _legend_outside(axes: Axes) -> None:
-    """Move the legend below everything else on the page."""
-    own, page = axes.get_legend(), axes.get_figure(root=True)
-    if own is not None and page is not None:
-        own.remove()
-        page.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False, fontsize=8.5)
-
-
-def _page(result: Result | None = None, height: float = 4.2) -> tuple[Figure, Axes]:
-    """A picture for one axes; that of a long body is wide."""
-    width = WIDTH
-    if result is not None and result.boundary is not None:
-        across, up = body_extent(result.boundary)
-        width, height = (1.8 * WIDTH, 3.4) if across > 2.5 * up else (WIDTH, 4.4)
-    figure = new_page(width, height)
-    return figure, figure.add_subplot()

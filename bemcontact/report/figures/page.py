@@ -1,6 +1,5 @@
 """What all pictures share: colors, pieces of the contact zones, axes with units, and files."""
 
-import re
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -58,12 +57,12 @@ def save(figure: Figure, path: Path) -> None:
     ensure_known_format(path)
     ending = path.suffix.lower()[1:]
     undated = {DATES[ending]: None} if ending in DATES else {}
-    picture = _picture(figure, {}, format=ending, dpi=160, pad_inches=0.15, metadata=undated)
+    picture = file_content(figure, {}, format=ending, dpi=160, pad_inches=0.15, metadata=undated)
     with output.whole_file(path) as temporary:
         temporary.write_bytes(picture)
 
 
-def _picture(figure: Figure, settings: Any, **form: Any) -> bytes:
+def file_content(figure: Figure, settings: Any, **form: Any) -> bytes:
     """Draw a figure as the content of a file, without hidden characters in its texts."""
     with without_glyph_warnings():
         figure.draw_without_rendering()
@@ -167,8 +166,7 @@ PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 class Piece:
     """An unbroken piece of boundary in one contact zone, with its points (m,) in order.
 
-    A piece that closes on itself goes once round and ends at its first point; arc positions go on counting across the
-    place where they begin.
+    One with points all round ends at its first point. Arc positions go on counting across the place where they begin.
     """
 
     label: str
@@ -224,10 +222,18 @@ def distance_label(contact: CondensedContact, pieces: Sequence[Piece]) -> str:
 
 
 def _once_round(contact: CondensedContact, index: IntArray, touching: BoolArray) -> tuple[IntArray, Array]:
-    """Points (m,) of a run and their arc positions; a closed run begins and ends at one point that touches nothing."""
+    """Points (m,) of a run and their arc positions; a closed run begins and ends at one point that touches nothing.
+
+    If a stretch of it has no points, as a round body turns away from a plane, it begins and ends there.
+    """
     arc, perimeter, m = contact.arc_position[index], contact.run_length[contact.run[index[0]]], len(index)
     if not np.isfinite(perimeter):
         return index, arc
+    steps, lengths = np.diff(arc, append=arc[0] + perimeter), contact.weights[index]
+    pointless = np.where(steps > lengths + np.roll(lengths, -1), steps, 0.0)
+    if pointless.any():
+        around = np.arange(m) + int(pointless.argmax()) + 1
+        return index[around % m], arc[around % m] + around // m * perimeter
     first = 0
     if (touching[0] or touching[-1]) and not touching.all():
         begins = np.flatnonzero(touching & ~np.roll(touching, -1))  # last points before the open stretches
@@ -240,55 +246,6 @@ def _once_round(contact: CondensedContact, index: IntArray, touching: BoolArray)
     around = np.arange(first, first + m + 1)
     turns = around // m - first // m
     return index[around % m], arc[around % m] + turns * perimeter
-
-
-INK = "#e8eaed"
-"""Color on a dark page of what is black on paper."""
-
-IN_THE_DARK = {
-    "#000000": INK,
-    BLACK: INK,
-    "#ffffff": "#16191d",
-    BODY: "#2a3038",
-    GREY: "#9aa2ac",
-    BLUE: "#4ea8de",
-    GREEN: "#2fc08f",
-    VERMILION: "#f0803c",
-    PURPLE: "#dd9cc0",
-    AMBER: "#ecc765",
-}
-"""Color on paper -> color on a dark page, for those that would not be seen there."""
-
-
-def vector_graphic(figure: Figure) -> bytes:
-    """Write a figure as transparent SVG for light and dark pages; the bytes depend on the figure alone.
-
-    Matplotlib writes colors as style attributes, which a style sheet can overrule. The style sheet added here does so
-    on dark pages.
-    """
-    metadata = {DATES["svg"]: None, "Creator": None, "Format": None, "Type": None}
-    picture = _picture(
-        figure, {"svg.fonttype": "path"}, format="svg", transparent=True, pad_inches=0.08, metadata=metadata
-    )
-    written = re.sub(r' d="[^"]*"', _rounded, picture.decode())
-    return written.replace("</style>", f"{_style_sheet()}</style>", 1).encode()
-
-
-def _style_sheet() -> str:
-    """Style sheet with the colors for a dark page; text without a color takes that of the whole picture."""
-    rules = [
-        f'[style*="{kind}: {paper}"] {{ {kind}: {dark} !important }}'
-        for paper, dark in IN_THE_DARK.items()
-        for kind in ("fill", "stroke")
-    ]
-    dark = "\n".join((f"svg {{ fill: {INK} }}", *rules))
-    return f"\nsvg {{ color-scheme: light dark }}\n@media screen and (prefers-color-scheme: dark) {{\n{dark}\n}}\n"
-
-
-def _rounded(path: re.Match[str]) -> str:
-    """Round the points of a path to 0.01 typographic points, and remove needless blanks."""
-    rounded = re.sub(r"-?\d+\.\d+", lambda number: f"{round(float(number[0]), 2) + 0.0:.8g}", path[0])
-    return re.sub(r"\s*([MLQCz])\s*", r"\1", rounded)
 
 
 def show_decades(axes: Axes) -> None:

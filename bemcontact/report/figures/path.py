@@ -1,11 +1,12 @@
 """The picture of a load path: peak, resultant and ends of contact over the parameter."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from bemcontact.arrays import Array
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
@@ -35,6 +36,10 @@ PANELS = 8
 """Number of states whose pressure is drawn."""
 ROOM = 0.25
 """Room beside the contact in pictures of states, over its extent."""
+ROUND_OFF = 1e-12
+"""Share of the largest force, or moment, that pressures could have, which is no result."""
+SEEN = 0.2
+"""Share of the height of a panel from which on a pressure is seen well."""
 SHADE = 0.15
 """Opacity of stretches in contact."""
 
@@ -86,13 +91,14 @@ def _panel(figures: dict[str, Figure], name: str, path: ParameterPath) -> Axes:
 def draw_states(figure: Figure, path: ParameterPath) -> None:
     """Draw the pressure along the contact zones at evenly spaced values of the parameter, in a panel each.
 
-    All panels have one scale; an infinite pressure is cut off.
+    All panels have one scale, unless both ends of the path would not be seen in it; an infinite pressure is cut off.
     """
     at = np.linspace(path.path.begins_at, path.path.ends_at, PANELS).tolist()
     states = [path.path.at(t).pressure for t in at]
     tops = [ceiling(path.contact, pressure, path.infinite) or 1.08 * pressure.max(initial=0.0) for pressure in states]
     pieces = [*pieces_of(path.contact, np.any([pressure > 0 for pressure in states], axis=0))]
-    panels = figure.subplots(PANELS // 2, 2, sharex=True, sharey=True).ravel().tolist()
+    alike = max(tops[0], tops[-1]) >= SEEN * max(tops)
+    panels = figure.subplots(PANELS // 2, 2, sharex=True, sharey=alike).ravel().tolist()
     for axes, t, pressure in zip(panels, at, states, strict=True):
         for piece in pieces:
             color = CYCLE[int(path.contact.zone[piece.index[0]]) % len(CYCLE)]
@@ -101,11 +107,17 @@ def draw_states(figure: Figure, path: ParameterPath) -> None:
         axes.set_title(f"at {number(path.value(t))}", fontsize=9, loc="left")
         axes.spines[["top", "right"]].set_visible(False)
     panels[0].set_xlim(*_around_contact(pieces, states))
-    panels[0].set_ylim(0.0, max(tops) or 1.0)
+    for axes, top in zip(panels, tops, strict=True):
+        axes.set_ylim(0.0, (max(tops) if alike else top) or 1.0)
     unit = units_of(path.contact)
     figure.supxlabel(labeled("distance along the contact zone", unit.length), fontsize=9)
     cut = f", infinite in {', '.join(path.infinite)}: cut off" if path.infinite else ""
-    figure.supylabel(labeled("pressure", unit.stress) + plain(cut), fontsize=9)
+    scales = "" if alike else ", each panel with a scale of its own"
+    figure.supylabel(labeled("pressure", unit.stress) + plain(cut) + scales, fontsize=9)
+    if len(path.zones) > 1:
+        lines = [Line2D([], [], color=CYCLE[order % len(CYCLE)]) for order in range(len(path.zones))]
+        names = [short_label(zone, 24) for zone in path.zones]
+        figure.legend(lines, names, loc="outside upper center", ncols=3, frameon=False, fontsize=8.5)
 
 
 def _around_contact(pieces: Sequence[Piece], states: Sequence[Array]) -> tuple[float, float]:
@@ -132,36 +144,54 @@ def draw_peaks(axes: Axes, path: ParameterPath) -> None:
         axes.set_yticks([])
         return
     _draw_line(axes, path, [state.peak or 0.0 for state in path.states], BLACK, "")
-    known = [(state.value, state.peak, state.peak * state.peak_bar) for state in path.pressed
-             if state.peak is not None and state.peak_bar is not None]  # fmt: skip
-    for value, peak, error in known:
-        axes.vlines(value, peak - error, peak + error, color=BLACK, linewidth=1.0)
+    known = ((state.value, state.peak, state.peak * state.peak_bar) for state in path.pressed
+             if state.peak is not None and state.peak_bar is not None)  # fmt: skip
+    _draw_errors(axes, known, BLACK)
     axes.scatter(
         [state.value for state in path.coarse], [state.peak or 0.0 for state in path.coarse],
         s=14, facecolors="white", edgecolors=VERMILION, linewidth=1.0, zorder=3,
     )  # fmt: skip
-    axes.set_ylim(bottom=0)
+    axes.set_ylim(0.0, max(axes.get_ylim()[1], 1.08 * max(state.peak or 0.0 for state in path.states)))
 
 
 def draw_resultants(axes: Axes, path: ParameterPath) -> None:
-    """Draw the size of the force of each rigid surface on the body over the parameter."""
+    """Draw the size of the force of each rigid surface on the body over the parameter, with errors at breakpoints."""
     sizes = [[float(np.hypot(*force)) for force in state.resultant] for state in path.states]
-    _draw_by_zone(axes, path, sizes)
+    _draw_by_zone(axes, path, sizes, _pressing(path))
+    for order, zone in enumerate(path.zones):
+        forces = (
+            (state, float(np.hypot(*state.resultant[order])), bar)
+            for state in path.breakpoints for bar in state.bars if bar.quantity == "force" and bar.zone == zone
+        )  # fmt: skip
+        known = (
+            (state.value, size, abs(bar.value) * bar.bar) for state, size, bar in forces
+            if bar.value is not None and bar.bar is not None
+        )  # fmt: skip
+        _draw_errors(axes, known, CYCLE[order % len(CYCLE)])
     axes.set_ylabel(labeled("resultant", units_of(path.contact).line_force))
     axes.set_ylim(bottom=0)
 
 
 def draw_moments(axes: Axes, path: ParameterPath) -> None:
     """Draw the moment about the origin of the force of each rigid surface on the body over the parameter."""
-    _draw_by_zone(axes, path, [[*state.moments] for state in path.states])
+    lever = float(np.abs(path.contact.points).max())
+    _draw_by_zone(axes, path, [[*state.moments] for state in path.states], lever * _pressing(path))
     axes.set_ylabel(labeled("moment about (0, 0)", units_of(path.contact).line_moment))
 
 
-def _draw_by_zone(axes: Axes, path: ParameterPath, numbers: list[list[float]]) -> None:
-    """Draw a number of each zone, given state by state, over the parameter."""
+def _pressing(path: ParameterPath) -> float:
+    """A force that no pressure on the path exceeds [p L]."""
+    forces = [np.abs(state.resultant).max(initial=0.0) for state in path.states]
+    peaks = [state.peak or 0.0 for state in path.states]
+    return float(max(forces) + max(peaks) * path.contact.weights.sum())
+
+
+def _draw_by_zone(axes: Axes, path: ParameterPath, numbers: list[list[float]], scale: float) -> None:
+    """Draw a number of each zone, given state by state, over the parameter; round-off beside a scale is zero."""
     begin_at_left(axes, path)
     for order, zone in enumerate(path.zones):
-        _draw_line(axes, path, [row[order] for row in numbers], CYCLE[order % len(CYCLE)], plain(zone))
+        heights = [row[order] if abs(row[order]) > ROUND_OFF * scale else 0.0 for row in numbers]
+        _draw_line(axes, path, heights, CYCLE[order % len(CYCLE)], plain(zone))
     if len(path.zones) > 1:
         axes.legend(frameon=False, fontsize=8.5)
 
@@ -173,16 +203,37 @@ def begin_at_left(axes: Axes, path: ParameterPath) -> None:
 
 
 def draw_interval_ends(axes: Axes, path: ParameterPath, zone: str) -> None:
-    """Draw where a zone is in contact, by arc position, over the parameter; dots are breakpoints."""
+    """Draw where a zone is in contact, by arc position, over the parameter; dots are breakpoints, bars their errors."""
     begin_at_left(axes, path)
     color, stops = CYCLE[path.zones.index(zone) % len(CYCLE)], {state.value for state in path.breakpoints}
-    for values, starts, ends in _bands(path.states, zone):
+    bands = [*_bands(path.states, zone)]
+    if bands:
+        values, starts, ends = (np.concatenate([[np.nan, *band[i]] for band in bands])[1:] for i in range(3))
         axes.fill_between(values, starts, ends, color=color, alpha=SHADE, linewidth=0)
         for edge in (starts, ends):
             axes.plot(values, edge, color=color, linewidth=1.4)
-            marked = [(value, y) for value, y in zip(values, edge, strict=True) if value in stops]
+            marked = [(value, y) for value, y in zip(values.tolist(), edge, strict=True) if value in stops]
             axes.plot(*np.reshape(marked, (-1, 2)).T, color=color, linestyle="none", marker="o", markersize=2.2)
-    axes.set_ylabel(labeled(f"contact of {short_label(zone, 16)}", units_of(path.contact).length))
+    _draw_errors(axes, _errors_of_ends(path, zone), color)
+    axes.set_ylabel(labeled(f"distance along {short_label(zone, 16)}", units_of(path.contact).length))
+
+
+def _errors_of_ends(path: ParameterPath, zone: str) -> Iterator[tuple[float, float, float]]:
+    """Value, arc position and error of each end of contact at a breakpoint where it is known."""
+    for state in path.breakpoints:
+        both = state.ends(zone)
+        for bar in state.bars:
+            if bar.quantity in ("start", "end") and bar.zone == zone and bar.bar is not None:
+                i = bar.interval or 0
+                length = both[1][i] - both[0][i]
+                yield state.value, both[bar.quantity == "end"][i], bar.bar * length
+
+
+def _draw_errors(axes: Axes, known: Iterable[tuple[float, float, float]], color: str) -> None:
+    """Draw bars at values, around heights, as long as errors to either side."""
+    if bars := [*known]:
+        values, heights, errors = np.array(bars).T
+        axes.vlines(values, heights - errors, heights + errors, color=color, linewidth=1.0)
 
 
 def _draw_line(axes: Axes, path: ParameterPath, heights: list[float], color: str, label: str) -> None:

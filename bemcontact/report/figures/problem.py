@@ -33,6 +33,7 @@ from bemcontact.report.figures.page import (
     BODY,
     GREEN,
     GREY,
+    PURPLE,
     VERMILION,
     frame_plan,
     new_page,
@@ -40,7 +41,15 @@ from bemcontact.report.figures.page import (
     without_glyph_warnings,
     wrapped,
 )
-from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, draw_rollers, place_arrow, place_names
+from bemcontact.report.figures.symbols import (
+    Name,
+    draw_arrows,
+    draw_ground,
+    draw_rollers,
+    joined,
+    place_arrow,
+    place_names,
+)
 from bemcontact.report.formatting import (
     NEGLIGIBLE,
     acting_volume_loads,
@@ -52,7 +61,7 @@ from bemcontact.report.formatting import (
 Displacement = Callable[[Array], Array]
 """Points (k, 2) of the undeformed boundary -> how far (k, 2) they are displaced."""
 
-ROLES = {"may touch": VERMILION, "held": BLUE, "loaded": GREEN, "free": BLACK}
+ROLES = {"may touch": VERMILION, "bonded": PURPLE, "held": BLUE, "loaded": GREEN, "free": BLACK}
 """Role of an edge -> color."""
 ALONG = 0.3
 """Largest share of a traction across the edge with which it is drawn as one along the edge."""
@@ -100,6 +109,8 @@ def role(problem: Problem, edge: str) -> str:
     """Role of an edge: one of `ROLES`."""
     if any(edge in (*problem.edges_of(zone), *problem.opposite_edges(zone)) for zone in problem.zones):
         return "may touch"
+    if any(edge in problem.bonded_edges(name) for name in problem.bonded):
+        return "bonded"
     conditions = [condition for _, condition in _acting(problem, edge)]
     if not conditions:
         return "free"
@@ -147,7 +158,9 @@ def _draw_mesh(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     corners = mesh.nodes[mesh.elements]
     colors = [ROLES[role(problem, mesh.edge_names[edge])] for edge in mesh.edge]
     curves = element_curves(corners, 9)
-    axes.add_collection(LineCollection(list(curves), colors=colors, linewidths=2.2, zorder=3))
+    for edge in np.unique(mesh.edge):
+        lines, color = joined(curves[mesh.edge == edge]), ROLES[role(problem, mesh.edge_names[edge])]
+        axes.add_collection(LineCollection(lines, colors=color, linewidths=2.2, zorder=3))
     for nodes, diameter in ((corners[:, 0], 4.5), (corners[:, 1], 2.5)):
         axes.scatter(*nodes.T, s=diameter**2, c="white", edgecolors=colors, linewidths=0.9, zorder=4)
 
@@ -336,7 +349,9 @@ def _draw_legend(axes: Axes, problem: Problem) -> None:
     """Explain the colors in the picture, and list the loads on the volume."""
     occurring = {role(problem, edge.name) for edge in problem.edges}
     handles = [Line2D([], [], color=c, linewidth=2.5, label=name) for name, c in ROLES.items() if name in occurring]
-    if problem.contact_zones or any(not part for part in map(problem.is_elastic, problem.bodies)):
+    if "loaded" not in occurring and any(any(problem.tool_action(tool).load[:2]) for tool in problem.tools):
+        handles.append(Line2D([], [], color=GREEN, linewidth=1.3, label="force on a tool"))
+    if problem.contact_zones or not all(map(problem.is_elastic, problem.bodies)):
         handles.append(Line2D([], [], color=GREY, linewidth=1.3, label="rigid surface, normal"))
     handles += [Line2D([], [], linestyle="none", label=load) for load in volume_loads(problem)]
     axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)

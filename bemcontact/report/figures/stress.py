@@ -86,6 +86,7 @@ def fill_body(
         triangles, np.where(infinite, 2.0 * scale.levels[-1], values), levels=scale.levels, extend=scale.extend,
         cmap=BOTH_SIGNS if scale.measure.signed else COLOURS, zorder=0,
     )  # fmt: skip
+    drawn.set(edgecolor="face", linewidth=0.3)  # or the page is seen between two colors
     finite = shown & ~infinite
     return drawn, _mark(axes, points[finite], np.abs(values[finite]), points[infinite & shown])
 

@@ -1,4 +1,4 @@
-"""Hatched ground, rollers, arrows, and names placed where they cover least."""
+"""Lines, hatched ground, rollers, arrows, and names placed where they cover least."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -65,6 +65,13 @@ class Name:
     color: str
     anchors: Array
     directions: Array
+
+
+def joined(curves: Array) -> list[Array]:
+    """Lines (j, 2) through curves (m, c, 2), each as long as curves begin where the one before them ends."""
+    breaks = (curves[1:, 0] != curves[:-1, -1]).any(axis=1)
+    runs = np.split(curves, np.flatnonzero(breaks) + 1) if len(curves) else []
+    return [np.concatenate([run[0, :1], run[:, 1:].reshape(-1, 2)]) for run in runs]
 
 
 def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, color: str) -> Array:

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 from mesh_studies import punch
 
 import bemcontact
@@ -25,7 +27,7 @@ def link() -> ParameterPath:
 def test_page_has_a_picture_of_each_zone(link: ParameterPath):
     page = figures.figure_of_path(link)
     labels = [axes.get_ylabel() for axes in page.axes]
-    assert labels == ["peak pressure [N/mm²]", "resultant [N/mm]", *(f"contact of {zone} [mm]" for zone in
+    assert labels == ["peak pressure [N/mm²]", "resultant [N/mm]", *(f"distance along {zone} [mm]" for zone in
                       ("drum", "table", "wall"))]  # fmt: skip
     assert page.axes[-1].get_xlabel() == "conditions.loaded.pressure"
 
@@ -71,6 +73,28 @@ def test_a_path_that_is_too_coarse_between_its_ends_is_drawn(link: ParameterPath
     assert figures.figure_of_path(unknown).axes[0].get_title().endswith("mesh: not assessed between the ends")
 
 
+def test_errors_of_forces_and_ends_are_bars(link: ParameterPath):
+    """A bar of a force is relative to it, one of an end to the length of its interval."""
+    last = link.states[-1]
+    ((start,), (end,)), force = last.ends("table"), float(np.hypot(*last.resultant[1]))
+    bars = (
+        ErrorBar(quantity="force", zone="table", value=force, bar=0.02),
+        ErrorBar(quantity="start", zone="table", interval=0, value=start, bar=0.03),
+        ErrorBar(quantity="end", zone="table", interval=0, value=end, bar=0.05),
+        ErrorBar(quantity="end", zone="drum", interval=0, value=end, bar=None),
+    )
+    known = replace(link, breakpoint_bars=(*((),) * (len(link.breakpoints) - 1), bars))
+    drawn = []
+    for draw in (figures.draw_resultants, lambda axes, path: figures.draw_interval_ends(axes, path, "table")):
+        axes = Figure().add_subplot()
+        draw(axes, known)
+        drawn.append([bar for it in axes.collections if isinstance(it, LineCollection) for bar in it.get_segments()])
+    length = end - start
+    np.testing.assert_allclose(drawn[0], [[(20, 0.98 * force), (20, 1.02 * force)]])
+    expected = [[(20, y - error * length), (20, y + error * length)] for y, error in ((start, 0.03), (end, 0.05))]
+    np.testing.assert_allclose(drawn[1], expected)
+
+
 def test_accuracies_of_both_ends_are_in_the_title(link: ParameterPath):
     title = figures.figure_of_path(link).axes[0].get_title()
     assert "unique solution proved" in title
@@ -100,7 +124,8 @@ def test_moments_are_those_of_the_states(link: ParameterPath):
     """Curves equal data; that the moments are those of the forces is tested with the path."""
     lines = figures.figures_of_path(link)["moment"].axes[0].lines[::2]
     for order, line in enumerate(lines):
-        np.testing.assert_array_equal(line.get_ydata(), [state.moments[order] for state in link.states])
+        moments = np.array([state.moments[order] for state in link.states])
+        np.testing.assert_allclose(line.get_ydata(), moments, rtol=0, atol=1e-12 * np.abs(moments).max())
 
 
 def test_panels_are_states_of_the_path(link: ParameterPath):
@@ -122,7 +147,30 @@ def test_breakpoints_with_too_large_an_error_are_hollow(link: ParameterPath):
     known = tuple((bars[i % 2],) for i in range(len(link.breakpoints)))
     coarse = replace(link, start_accuracy=accuracy, end_accuracy=accuracy, breakpoint_bars=known)
     axes = figures.figures_of_path(coarse)["peak"].axes[0]
-    *ranges, hollow = axes.collections
+    ranges, hollow = axes.collections
+    assert isinstance(ranges, LineCollection)
     wanted = [state for i, state in enumerate(coarse.breakpoints) if not i % 2 and state in coarse.pressed]
     np.testing.assert_array_equal(hollow.get_offsets(), [(state.value, state.peak) for state in wanted])
-    assert len(ranges) == len(coarse.pressed)
+    assert len(ranges.get_segments()) == len(coarse.pressed)
+
+
+def test_panels_have_one_scale_unless_both_ends_are_hidden_in_it(link: ParameterPath):
+    """A beam first touches with its tip, under a pressure 30 times the last one: each panel has its own scale."""
+    beam = bemcontact.load(MODELS / "cantilever_flat_surface.yaml", variant="stated mesh")
+    for path, alike in ((link, True), (bemcontact.follow(beam, "conditions.top.traction.y", -3.6, 0), False)):
+        figure = figures.figures_of_path(path)["pressure"]
+        tops = [axes.get_ylim()[1] for axes in figure.axes]
+        assert (len({*tops}) == 1) == alike
+        for axes, top in zip(figure.axes, tops, strict=True):
+            assert max(float(np.max(line.get_ydata())) for line in axes.lines) <= top
+        assert ("scale of its own" in str(figure.get_supylabel())) != alike
+
+
+def test_round_off_is_drawn_as_zero():
+    """The forces of a pin on a ring that is shrunk on it cancel."""
+    ring = bemcontact.load(MODELS / "gallery" / "shrink_fit.yaml", variant="stated mesh")
+    path = bemcontact.follow(ring, "contact_zones.pin.surface.radius", 10.02, 10.005)
+    for draw in (figures.draw_resultants, figures.draw_moments):
+        axes = Figure().add_subplot()
+        draw(axes, path)
+        assert not np.asarray(axes.lines[0].get_ydata()).any()

@@ -42,7 +42,7 @@ def test_each_case_has_its_picture_and_its_curves():
     """A picture with the name and the peak of each; in each panel the curves of all, and the largest of all."""
     contacts, panels = case_axes(found())
     results = found().results
-    assert [axes.get_title(loc="left").split(":")[0] for axes in contacts] == [*results]
+    assert [axes.get_title(loc="left").split("\n")[0] for axes in contacts] == [*results]
     first = next(iter(results.values())).contact
     assert len(panels) == len(first.zone_names)
     for axes, zone in zip(panels, range(len(first.zone_names)), strict=True):
@@ -75,7 +75,7 @@ def test_pictures_write_peaks_with_the_digits_of_the_table(of_wind: float | None
         for name, one in found().results.items()
     }
     contacts, _ = case_axes(replace(found(), results=results))
-    written = [axes.get_title(loc="left").split(": ")[1] for axes in contacts]
+    written = [axes.get_title(loc="left").split("\n")[1] for axes in contacts]
     assert written == [peak_of(one.to_dict(), NO_UNITS) for one in results.values()]
     axes = Figure().add_subplot()
     figures.draw_pressure(axes, results["wind"])
@@ -191,7 +191,7 @@ def test_infinite_pressures_are_cut_off_at_three_times_the_mean():
     assert f"{one.solution.pressure.max():.5g}" not in texts_of(page)
     contacts, (panel,) = case_axes(on_a_punch())
     assert panel.get_ylim()[1] == pytest.approx(3 * 15, rel=1e-3)
-    assert [axes.get_title(loc="left") for axes in contacts] == ["low: infinite in foot", "high: infinite in foot"]
+    assert [axes.get_title(loc="left") for axes in contacts] == ["low\ninfinite in foot", "high\ninfinite in foot"]
 
 
 def test_color_of_the_title_is_that_of_the_worse_verdict():
