@@ -18,6 +18,8 @@ from bemcontact.problem.problem import Problem
 
 NEAR = 0.3
 """Part of an element up to which one of its ends moves to where an opposite part ends, instead of a new end there."""
+BESIDE = 1e-3
+"""Distance from an end of some places, over their extent, where a closest point is on the same side of a full turn."""
 SAME = 1e-11
 """Difference of two fractions of an edge up to which they are one element end."""
 
@@ -101,11 +103,12 @@ def in_order(edges: Mapping[str, Edge], matched: Sequence[Matched]) -> list[str]
 
 def feet(item: Matched, edge: Edge, at: Array) -> Array:
     """Fractions (k,) of the opposite edge at the closest points of ascending places (k,) of an edge: they descend."""
-    there = item.surface.edges[item.part.onto].curve.nearest(edge.points(at))
-    if there[0] + HALF < there[1]:  # the end of a full circle is its start
-        there[0] = 1.0
-    if there[-1] > there[-2] + HALF:
-        there[-1] = 0.0
+    curve, inside = item.surface.edges[item.part.onto].curve, BESIDE * (at[-1] - at[0])
+    there = curve.nearest(edge.points(at))
+    beside = curve.nearest(edge.points(np.array([at[0] + inside, at[-1] - inside])))
+    for end in (0, -1):
+        if abs(there[end] - beside[end]) > HALF:  # the end of a full circle is its start
+            there[end] = round(beside[end])
     return there
 
 

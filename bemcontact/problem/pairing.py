@@ -40,14 +40,18 @@ class OppositePart(NamedTuple):
     onto: int
 
 
-def opposite_parts(edges: Sequence[Edge], surface: BodySurface) -> list[OppositePart]:
-    """Parts of edges opposite to a surface, in order.
+def opposite_parts(edges: Sequence[Edge], surface: BodySurface, reach: float = np.inf) -> list[OppositePart]:
+    """Parts of edges opposite to a surface, in order, no farther from it than the nearest place and a reach [L].
 
     A place is opposite to the surface if it is turned to it, and its closest point there is no corner, for pairs of
     points need closest points of their own. The closest point may be a corner of a rigid surface both sides of which
     the place is turned to.
     """
-    return [part for edge in edges for part in _parts_of(edge, surface)]
+    most = np.inf
+    if np.isfinite(reach) and edges:
+        at = np.linspace(0.0, 1.0, SAMPLES + 1)
+        most = min(float(surface.feet(edge.points(at)).gap.min()) for edge in edges) + reach
+    return [part for edge in edges for part in _parts_of(edge, surface, most)]
 
 
 def blunt_corner(edge: Edge, surface: BodySurface) -> Array | None:
@@ -63,8 +67,8 @@ def _is_blunt(inward: Array, feet: Feet, surface: BodySurface) -> BoolArray:
     return np.all(turned_to(inward[:, None], surface.beside(feet)), axis=1)
 
 
-def _parts_of(edge: Edge, surface: BodySurface) -> list[OppositePart]:
-    """Opposite parts of one edge."""
+def _parts_of(edge: Edge, surface: BodySurface, most: float) -> list[OppositePart]:
+    """Opposite parts of one edge, up to a gap [L]."""
 
     def opposite(at: Array) -> tuple[IntArray, Array]:
         feet = surface.feet(edge.points(at))
@@ -72,7 +76,7 @@ def _parts_of(edge: Edge, surface: BodySurface) -> list[OppositePart]:
         one = ~feet.corner
         if not surface.elastic and feet.corner.any():
             one |= _is_blunt(-edge.normals(at), feet, surface)
-        return np.where(turned & one, feet.edge, -1), feet.fraction
+        return np.where(turned & one & (feet.gap <= most), feet.edge, -1), feet.fraction
 
     at = np.linspace(0.0, 1.0, SAMPLES + 1)
     onto, there = opposite(np.clip(at, INSIDE, 1 - INSIDE))  # on a corner of the surface two edges are nearest

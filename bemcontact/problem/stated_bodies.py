@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
+import numpy as np
 from pydantic import Field, PrivateAttr
 
 from bemcontact.checks.arguments import text_of_argument
@@ -30,6 +31,10 @@ from bemcontact.problem.units import Units
 from bemcontact.problem.validation import Name, SpecModel, Text, Title, left_out
 from bemcontact.problem.visibility import edges_that_see, zone_edges
 from bemcontact.problem.wording import unknown_word
+
+
+REACH = 0.03
+"""Part of the size of the smaller of two whole bodies up to which gaps may close: a larger strain is not small."""
 
 
 class StatedBodies(SpecModel):
@@ -226,7 +231,10 @@ class StatedBodies(SpecModel):
             names = self.edges_of(contact) if zone is None else zone.edges
             surface = (zone or self.zones[contact]).surface
             assert isinstance(surface, BodySurface)
-            parts = opposite_parts([edges[name] for name in names], surface)
+            whole = contact in self.contacts and any(SEPARATOR not in side[0] for side in self.contacts[contact].between)
+            sizes = [size_of(self.boundary_of(body).edges) for body in self.sides_of(contact)] if whole else []
+            reach = REACH * min(sizes, default=np.inf)
+            parts = opposite_parts([edges[name] for name in names], surface, reach)
             self._opposite[contact] = tuple(parts)
         return self._opposite[contact]
 
