@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved
-from bemcontact.adaptivity.wedge_exponents import Face, Opposite, contact_face, slow_change, wedge_exponents
+from bemcontact.adaptivity.wedge_exponents import Face, OppositeWedge, contact_face, slow_change, wedge_exponents
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
 from bemcontact.bem.mesh import CORNER
@@ -213,7 +213,7 @@ ElasticWedge = tuple[float, float, tuple[Face, Face], float]
 
 def _wedges_at(
     solved: Solved, answer: CaseAnswer, run: ZoneRun, position: float
-) -> tuple[ElasticWedge, tuple[complex, ...], Opposite | None]:
+) -> tuple[ElasticWedge, tuple[complex, ...], OppositeWedge | None]:
     """The elastic wedge at a position of a run, the tractions on its faces [p], and the one that it touches.
 
     Tractions on the faces of the latter come last.
@@ -229,7 +229,7 @@ def _wedges_at(
     across = facing[before] if facing[before] >= 0 else mesh.elements[facing[after], 2]
     other, their_loads = _wedge_at(solved, answer, int(across))
     moduli = [solved.body.shear_moduli[element] for element in (after, across)]
-    return wedge, (*loads, *their_loads), Opposite(*other, stiffness=float(moduli[1] / moduli[0]))
+    return wedge, (*loads, *their_loads), OppositeWedge(*other, stiffness=float(moduli[1] / moduli[0]))
 
 
 def _wedge_at(solved: Solved, answer: CaseAnswer, after: int) -> tuple[ElasticWedge, tuple[complex, complex]]:

@@ -60,7 +60,7 @@ def contact_face(normal: complex) -> Face:
 FREE = Face(1.0, (False, False))
 
 
-class Opposite(NamedTuple):
+class OppositeWedge(NamedTuple):
     """The elastic wedge on the other side of contact.
 
     Parameters
@@ -79,7 +79,7 @@ class Opposite(NamedTuple):
 
 @lru_cache(maxsize=256)
 def wedge_exponents(
-    start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, opposite: Opposite | None = None
+    start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, opposite: OppositeWedge | None = None
 ) -> tuple[float, ...]:
     """Exponents α = 1 - λ of pressures that are infinite like r^-α, the largest first.
 
@@ -143,7 +143,7 @@ class SlowChange(NamedTuple):
 @lru_cache(maxsize=256)
 def slow_change(
     start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, loads: tuple[complex, ...],
-    opposite: Opposite | None = None,
+    opposite: OppositeWedge | None = None,
 ) -> SlowChange | None:  # fmt: skip
     """How slowly the pressure changes at the tip of a wedge; None if no λ is near to one.
 
@@ -180,7 +180,7 @@ def slow_change(
 
 OUTWARD = -1.0, 1.0
 """Signs of the tractions out of a wedge on its faces: the field has those on rays, towards larger angles."""
-Wedge = tuple[float, float, tuple[Face, Face], float, Opposite | None]
+Wedge = tuple[float, float, tuple[Face, Face], float, OppositeWedge | None]
 
 
 def _least(wedge: Wedge, low: float, high: float) -> float:

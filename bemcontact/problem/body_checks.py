@@ -1,9 +1,6 @@
 """Checks of several bodies against each other: names first, then which parts can meet."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -11,13 +8,12 @@ from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.bodies import SEPARATOR, BodySpec, qualified
 from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.conditions import Loads
+from bemcontact.problem.contact_zone import RigidTool
 from bemcontact.problem.pairing import blunt_corner
 from bemcontact.problem.rigid_surface import DeflectedContour
+from bemcontact.problem.stated_bodies import StatedBodies
 from bemcontact.problem.validation import KeyIssue
 from bemcontact.problem.wording import unknown_word
-
-if TYPE_CHECKING:
-    from bemcontact.problem.problem import Problem
 
 COINCIDE = 1e-6
 """Distance of bonded edges over the size of the bodies that is round-off of coordinates."""
@@ -25,7 +21,7 @@ SAMPLES = 33
 """Places of an edge where the distance is measured."""
 
 
-def body_issues(problem: Problem) -> Iterator[Issue]:
+def body_issues(problem: StatedBodies) -> Iterator[Issue]:
     """Issues of the bodies themselves: what belongs to each of them, copies, materials, conditions."""
     for key, given in (
         ("material", problem.material is not None),
@@ -51,7 +47,7 @@ def body_issues(problem: Problem) -> Iterator[Issue]:
         yield Issue(path=("bodies",), message="all bodies are rigid; at least one has to be elastic")
 
 
-def _copy_issues(problem: Problem, name: str, body: BodySpec) -> Iterator[Issue]:
+def _copy_issues(problem: StatedBodies, name: str, body: BodySpec) -> Iterator[Issue]:
     """Issues of a copy of another body."""
     if body.copy_of is None:
         return
@@ -77,7 +73,7 @@ def _copy_issues(problem: Problem, name: str, body: BodySpec) -> Iterator[Issue]
             )
 
 
-def contact_issues(problem: Problem) -> Iterator[Issue]:
+def contact_issues(problem: StatedBodies, tools: Mapping[str, RigidTool]) -> Iterator[Issue]:
     """Issues of contacts, zones and load cases that name what does not exist, or what cannot touch."""
     if not problem.contacts and not problem.contact_zones:
         message = "nothing touches; give contacts between bodies, such as contacts: {track: {between: [roller, rail]}}"
@@ -107,10 +103,10 @@ def contact_issues(problem: Problem) -> Iterator[Issue]:
                 message = f"edge '{edge}' has a condition and cannot touch; remove one of the two"
                 yield Issue(path=("contact_zones", name, "edges", i), message=message)
     yield from _case_issues(problem, edges)
-    yield from _tool_issues(problem)
+    yield from _tool_issues(problem, tools)
 
 
-def _bond_issues(problem: Problem) -> Iterator[Issue]:
+def _bond_issues(problem: StatedBodies) -> Iterator[Issue]:
     """Issues of bonded interfaces that name what does not exist, or what is in contact too."""
     touching = {entry for contact in problem.contacts.values() for side in contact.between for entry in side}
     touching |= {edge for zone in problem.contact_zones.values() for edge in zone.edges or ()}
@@ -141,7 +137,7 @@ def _bond_issues(problem: Problem) -> Iterator[Issue]:
                 seen.add(entry)
 
 
-def _side_issues(problem: Problem, side: Sequence[str], path: KeyPath, number: int) -> Iterator[Issue]:
+def _side_issues(problem: StatedBodies, side: Sequence[str], path: KeyPath, number: int) -> Iterator[Issue]:
     """Issues of one side of a contact."""
     bodies = {name.partition(SEPARATOR)[0] for name in side}
     if len(bodies) > 1:
@@ -167,7 +163,7 @@ def _side_issues(problem: Problem, side: Sequence[str], path: KeyPath, number: i
             yield Issue(path=here, message=message)
 
 
-def _pair_issues(problem: Problem, between: tuple[Sequence[str], Sequence[str]], path: KeyPath) -> Iterator[Issue]:
+def _pair_issues(problem: StatedBodies, between: tuple[Sequence[str], Sequence[str]], path: KeyPath) -> Iterator[Issue]:
     """Issues of the two sides of a contact together."""
     first, second = (side[0].partition(SEPARATOR)[0] for side in between)
     if all(problem.bodies[problem.bodies[name].copy_of or name].rigid for name in (first, second)):
@@ -178,7 +174,7 @@ def _pair_issues(problem: Problem, between: tuple[Sequence[str], Sequence[str]],
         yield Issue(path=path, message=f"name the edges of '{first}' on both sides that may touch each other")
 
 
-def _case_issues(problem: Problem, edges: Sequence[str]) -> Iterator[Issue]:
+def _case_issues(problem: StatedBodies, edges: Sequence[str]) -> Iterator[Issue]:
     """Issues of load cases that name what does not exist."""
     elastic = [part.name for part in problem.parts]
     for name, case in problem.load_cases.items():
@@ -195,9 +191,9 @@ def _case_issues(problem: Problem, edges: Sequence[str]) -> Iterator[Issue]:
                 yield KeyIssue(path=("load_cases", name, "conditions", edge), message=message)
 
 
-def _tool_issues(problem: Problem) -> Iterator[Issue]:
+def _tool_issues(problem: StatedBodies, tools: Mapping[str, RigidTool]) -> Iterator[Issue]:
     """Issues of tools that would move an elastic body."""
-    for name, tool in problem.tools.items():
+    for name, tool in tools.items():
         for zone in tool.zones:
             if zone in problem.contacts and all(
                 not problem.bodies[problem.bodies[body].copy_of or body].rigid
@@ -210,7 +206,7 @@ def _tool_issues(problem: Problem) -> Iterator[Issue]:
                 yield Issue(path=("tools", name, "zones"), message=message)
 
 
-def opposite_issues(problem: Problem) -> Iterator[Issue]:
+def opposite_issues(problem: StatedBodies) -> Iterator[Issue]:
     """Issues of contacts whose two sides cannot meet, and of meshes that would follow each other in a circle."""
     follows: dict[str, set[str]] = {}
     for name, zone in problem.bonds.items():
@@ -253,7 +249,7 @@ def opposite_issues(problem: Problem) -> Iterator[Issue]:
         yield Issue(path=("contacts",), message=message)
 
 
-def _distance(problem: Problem, bond: str) -> float | None:
+def _distance(problem: StatedBodies, bond: str) -> float | None:
     """Largest distance [L] of bonded edges where they are opposite to each other; None if they are nowhere."""
     surface, away = problem.bonds[bond].surface, list[float]()
     for part in problem.opposite(bond):

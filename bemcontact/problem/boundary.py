@@ -132,10 +132,10 @@ class Boundary(SpecModel):
     @cached_property
     def size(self) -> float:
         """Diameter of the bounding box [L]."""
-        return size_of(self.edges)
+        return size_of_edges(self.edges)
 
 
-def size_of(edges: Iterable[Edge]) -> float:
+def size_of_edges(edges: Iterable[Edge]) -> float:
     """Diameter of the bounding box of edges [L]."""
     points = np.vstack([edge.polyline() for edge in edges])
     return float(np.hypot(*np.ptp(points, axis=0)))

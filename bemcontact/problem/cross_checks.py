@@ -8,7 +8,7 @@ from math import degrees, radians
 import numpy as np
 
 from bemcontact.errors import Issue, KeyPath
-from bemcontact.problem.boundary import Boundary, far_issue, size_of
+from bemcontact.problem.boundary import Boundary, far_issue, size_of_edges
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.contact_zone import ALL, TOOL_COMPONENTS, ContactZone, RigidTool, ToolAction
 from bemcontact.problem.curves import Edge
@@ -231,7 +231,7 @@ def facing_issues(
     The direction of a deflected contour must not point out of the body at any point of the zone. `prescribed` names
     the edges with conditions.
     """
-    edges, size = {edge.name: edge for edge in boundary}, size_of(boundary)
+    edges, size = {edge.name: edge for edge in boundary}, size_of_edges(boundary)
     issues = []
     for path, zone in zones.items():
         members = [edges[name] for name in zone_edges(boundary, zone, prescribed)]

@@ -191,7 +191,7 @@ class Problem(StatedBodies):
             return issues
         raw, conditions = RawValue((), self), RawValue(("conditions",), self.edge_conditions)
         zones = RawValue(("contact_zones",), {**self.contact_zones, **self.contacts})
-        issues += [*contact_issues(self), *self._action_issues(raw, zones, conditions)]
+        issues += [*contact_issues(self, self.tools), *self._action_issues(raw, zones, conditions)]
         issues += reference_issues(raw.below(type(self), "reference"), zones, self._raw_case_names(raw))
         stated: dict[KeyPath, ContactZone] = {
             ("contact_zones", name): zone for name, zone in self.contact_zones.items()

@@ -20,7 +20,7 @@ from bemcontact.problem.bodies import (
     with_boundary,
 )
 from bemcontact.problem.body_surface import BodySurface, BodyZone
-from bemcontact.problem.boundary import Boundary, size_of
+from bemcontact.problem.boundary import Boundary, size_of_edges
 from bemcontact.problem.conditions import Condition, Loads
 from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import Edge
@@ -31,7 +31,6 @@ from bemcontact.problem.units import Units
 from bemcontact.problem.validation import Name, SpecModel, Text, Title, left_out
 from bemcontact.problem.visibility import edges_that_see, zone_edges
 from bemcontact.problem.wording import unknown_word
-
 
 REACH = 0.03
 """Part of the size of the smaller of two whole bodies up to which gaps may close: a larger strain is not small."""
@@ -141,7 +140,7 @@ class StatedBodies(SpecModel):
     @property
     def size(self) -> float:
         """Diameter of the bounding box of the elastic bodies [L]."""
-        return size_of(self.edges) if self.boundary is None else self.boundary.size
+        return size_of_edges(self.edges) if self.boundary is None else self.boundary.size
 
     @property
     def volume_loads(self) -> list[tuple[Loads, ...]]:
@@ -231,8 +230,10 @@ class StatedBodies(SpecModel):
             names = self.edges_of(contact) if zone is None else zone.edges
             surface = (zone or self.zones[contact]).surface
             assert isinstance(surface, BodySurface)
-            whole = contact in self.contacts and any(SEPARATOR not in side[0] for side in self.contacts[contact].between)
-            sizes = [size_of(self.boundary_of(body).edges) for body in self.sides_of(contact)] if whole else []
+            whole = contact in self.contacts and any(
+                SEPARATOR not in side[0] for side in self.contacts[contact].between
+            )
+            sizes = [size_of_edges(self.boundary_of(body).edges) for body in self.sides_of(contact)] if whole else []
             reach = REACH * min(sizes, default=np.inf)
             parts = opposite_parts([edges[name] for name in names], surface, reach)
             self._opposite[contact] = tuple(parts)

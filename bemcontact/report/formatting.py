@@ -94,7 +94,7 @@ def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]
 
 
 def materials_in_words(problem: Problem) -> list[str]:
-    """Constants of the material of each body, and the plane state: ``E = 210 N/mm², Poisson's ratio 0.3, plane strain``.
+    """Constants of the material of each body, and the plane state: ``E = 2 N/mm², Poisson's ratio 0.3, plane strain``.
 
     Several bodies have their names before it.
     """

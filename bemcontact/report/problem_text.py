@@ -5,8 +5,7 @@ from rich.table import Table
 from rich.text import Text
 
 from bemcontact.analysis.check import CheckedProblem
-from bemcontact.bem.mesh import Mesh
-from bemcontact.problem import DeflectedContour, Problem
+from bemcontact.problem import DeflectedContour
 from bemcontact.report.formatting import (
     case_in_words,
     deflected_by,
@@ -62,11 +61,12 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
         add(shown, "Variant", f"{name}: {variant.description.strip() or changes}")
     for note in checked.notes:
         add(shown, "Note", note)
-    return Group(Text(problem.title, "bold"), "", _edge_table(problem, mesh), "", _zone_table(checked), "", shown)
+    return Group(Text(problem.title, "bold"), "", _edge_table(checked), "", _zone_table(checked), "", shown)
 
 
-def _edge_table(problem: Problem, mesh: Mesh) -> Table:
+def _edge_table(checked: CheckedProblem) -> Table:
     """List the edges, loop by loop."""
+    problem, mesh = checked.problem, checked.mesh
     table = table_of("edge", "kind", "length", "elements", "condition")
     loops = [
         (part.name, number_of_loop, *loop)
