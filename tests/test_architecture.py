@@ -88,9 +88,8 @@ SLOW = {"cvxpy", "clarabel", "matplotlib", "numba", "meshio", "distributed", "py
 
 LATE = {
     ("bem.body", "bem.deflected_contours"): "only these need equations, and check starts without",
-    ("analysis.result", "analysis.body_stress"): "stress is computed where it is asked for, and solve starts without",
+    ("analysis.result", "analysis.stress_of_bodies"): "stress is computed if it is asked for, and solve starts without",
     ("analysis.result", "analysis.stress_bars"): "likewise",
-    ("analysis.result", "analysis.triangulated_body"): "likewise",
 }
 """(Who imports, what) -> why the import stands where it is used. The command line imports all other rooms so."""
 
