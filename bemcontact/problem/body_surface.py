@@ -11,7 +11,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problem.curves import Curve, Edge, cross
 from bemcontact.problem.rigid_surface import RigidSurface, Shape
-from bemcontact.problem.surface_lines import Closest, Faces
+from bemcontact.problem.surface_lines import Closest, Faces, between_normals
 
 AT_END = 1e-9
 """Sine of the angle between the way to the end of an edge and the normal there from which the end itself is nearest."""
@@ -31,7 +31,8 @@ class Feet(NamedTuple):
     points : (k, 2) [L]
     gap : (k,) distance as drawn [L], negative inside the body
     normals : (k, 2) unit vectors out of the body
-    corner : (k,) whether it is a corner or an end of the surface, so that other points have it too
+    corner : (k,) whether it is a corner or an end of the surface, and the point is on the normal of no edge there
+    at_corner : (k,) whether it is a corner or an end of the surface, so that other points have it too
     """
 
     edge: IntArray
@@ -40,6 +41,7 @@ class Feet(NamedTuple):
     gap: Array
     normals: Array
     corner: BoolArray
+    at_corner: BoolArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,14 +92,15 @@ class BodySurface:
         for i in sorted({*number.tolist()}):
             normals[number == i] = self.edges[i].normals(fraction[number == i])
         offset, (sums, corners) = points - foot, self._ends
-        corner = np.zeros(len(points), bool)
+        corner, at_corner = np.zeros((2, len(points)), bool)
         for end in (0, 1):
             at = np.flatnonzero((fraction == end) & corners[number, end])
+            at_corner[at] = True
             tilted = abs(cross(offset[at], normals[at])) > AT_END * away[number[at], at]
             at = at[tilted & (away[number[at], at] > 0)]
             side = np.where(np.sum(offset[at] * sums[number[at], end], axis=1) < 0, -1.0, 1.0)
             normals[at], corner[at] = side[:, None] * offset[at] / away[number[at], at, None], True
-        return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner)
+        return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner, at_corner)
 
     def beside(self, feet: Feet) -> Array:
         """Normals (k, 2, 2) out of the body on both sides of places that are corners, of others twice their own."""
@@ -118,7 +121,8 @@ class BodySurface:
 
         A point on a corner of this body has the edge to which each side of it, with normals (k, 2, 2) into its own
         body, is turned. So has a corner of the other body that stands in a concave one, up to the distance `reach`
-        (k,) [L].
+        (k,) [L]. A convex corner presses on a smooth boundary along its normal, as far as that is between the normals
+        of the edges.
         """
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in self.closest(points))
         turns = abs(cross(inward[:, 0], inward[:, 1])) > CORNER
@@ -129,6 +133,8 @@ class BodySurface:
             turned = np.einsum("kai,si->kas", inward[at], own)
             for column, side in ((0, 0), (1, 0), (2, 1)):
                 chosen = own[turned[:, side].argmax(axis=1)]
+                if cross(own[0], own[1]) > 0:
+                    chosen = np.where(turns[at, None], chosen, between_normals(inward[at, side], own[:1], own[1:]))
                 normals[at, column] = chosen
                 gap[at, column] = np.sum((points[at] - joint) * chosen, axis=1) + self.offset
         return Faces(gap, normals, normals.copy())
