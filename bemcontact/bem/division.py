@@ -98,12 +98,13 @@ def in_order(edges: Mapping[str, Edge], matched: Sequence[Matched]) -> list[str]
 
 def feet(item: Matched, edge: Edge, at: Array) -> Array:
     """Fractions (k,) of the opposite edge at the closest points of ascending places (k,) of an edge: they descend."""
-    there = item.surface.edges[item.part.onto].curve.nearest(edge.points(at))
+    every = at if len(at) > 2 else np.array([at[0], at.mean(), at[1]])  # the middle tells an end from the start
+    there = item.surface.edges[item.part.onto].curve.nearest(edge.points(every))
     if there[0] + HALF < there[1]:  # the end of a full circle is its start
         there[0] = 1.0
     if there[-1] > there[-2] + HALF:
         there[-1] = 0.0
-    return there
+    return there if len(at) > 2 else there[[0, 2]]
 
 
 def _thirds(ends: Array) -> Array:
@@ -138,7 +139,7 @@ def _matched(
     fractions: Mapping[str, Array],
     refine: int,
 ) -> tuple[Array, Array, list[tuple[str, Facing]]]:
-    """Ends (e + 1,) before they are cut, elements (e, 3) of an edge that follows others, and pairs that face each other.
+    """Ends (e + 1,) before they are cut, elements (e, 3) of an edge that follows others, and facing pairs.
 
     Elements that follow none are cut in equal parts; those that do have the nodes that the closest points give.
     """

@@ -18,8 +18,8 @@ HALF = 0.5
 """Difference of fractions of an edge between two samples from which its end is between them."""
 INSIDE = 1e-9
 """Distance from an end of the edge, over its length, where the end is looked at."""
-SHORTEST = 1e-9
-"""Least length of an opposite part over that of its edge: shorter ones are round-off of coordinates."""
+SHORTEST = 1e-6
+"""Least length of an opposite part over that of its edge: shorter ones are round-off of coordinates and corners."""
 SAME = 1e-12
 """Difference of two fractions of an edge that is round-off."""
 
