@@ -290,8 +290,8 @@ class SurfaceGaps:
         crosses: BoolArray = (behind | behind[mesh.before] | behind[mesh.elements[:, 2]])[elements, None]
         outside = (before > flush) | snug | (~crosses & (before >= -flush))
         surface = self.surfaces[zone]
-        if isinstance(surface, BodySurface) and surface.elastic:  # opposite to a corner, its own node is compared
-            outside &= ~surface.feet(at.points.reshape(-1, 2)).corner.reshape(outside.shape)
+        if isinstance(surface, BodySurface):
+            outside &= ~self._slides(zone, surface, at.points)
         depth, local = np.where(outside, -after, -np.inf), self.outline.local[elements].copy()
         for crossing in self._crossings(zone, elements, np.where(snug, np.inf, before), crosses, flush):
             if crossing.turned:
@@ -305,6 +305,21 @@ class SurfaceGaps:
         sure = depth > self._second_order(zone)
         hidden = [float(np.max(depth, initial=-np.inf, where=beyond & sure)) for beyond in ended]
         return np.where(np.any(ended, axis=0), -np.inf, depth), behind[elements], hidden, local
+
+    def _slides(self, zone: str, surface: BodySurface, places: Array) -> BoolArray:
+        """Whether a corner is nearest to places (k, q, 2), and pairs that end there are compared in their place.
+
+        Its distance would count along the boundary, which slides. A corner of an elastic body has a node of its own.
+        """
+        feet = surface.feet(places.reshape(-1, 2))
+        beside = feet.at_corner
+        if not surface.elastic and beside.any():
+            nodes = self.state.points[self.paired[zone]].reshape(-1, 2)
+            paired = surface.feet(nodes).points
+            corners, which = np.unique(feet.points[beside], axis=0, return_inverse=True)
+            away = np.hypot(*np.moveaxis(corners[:, None] - paired, 2, 0)).min(axis=1, initial=np.inf)
+            beside[beside] = (away <= FLUSH * self.problem.size)[which.ravel()]
+        return beside.reshape(places.shape[:-1])
 
     def _crossings(
         self, zone: str, elements: IntArray, before: Array, crosses: BoolArray, flush: float
@@ -439,11 +454,16 @@ class SurfaceGaps:
         )
 
     def _may_meet(self, zone: str) -> BoolArray:
-        """Whether each element (m,) is compared with a surface: of a contact of two bodies those of the first alone."""
-        mesh, surface = self.outline.mesh, self.surfaces[zone]
+        """Whether each element (m,) is compared with a surface: of a contact of two bodies those of the first alone.
+
+        Where both sides are on one body, the edges of the first side alone.
+        """
+        mesh, surface, edges = self.outline.mesh, self.surfaces[zone], self.problem.edges_of(zone)
         if not isinstance(surface, BodySurface):
             return np.ones(len(mesh.elements), bool)
-        first = self.problem.part_of(self.problem.edges_of(zone)[0])
+        first = self.problem.part_of(edges[0])
+        if first == surface.body:
+            return np.isin(mesh.edge_names, edges)[mesh.edge]
         return np.array([self.problem.part_of(name) == first for name in mesh.edge_names])[mesh.edge]
 
     def _near(self, zone: str) -> BoolArray:
