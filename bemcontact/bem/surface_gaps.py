@@ -253,16 +253,17 @@ class SurfaceGaps:
     def _beside_corner(self, zone: str, elements: IntArray) -> BoolArray:
         """Whether places (k, q) of elements (k,) are nearer to a corner of a polyline than they move, which is little.
 
-        Linear theory leaves open on which side of the corner they come to lie.
+        Linear theory leaves open on which side of the corner they come to lie. Those beside a convex corner of a body,
+        where pairs end, slide along the end however far they move; `placement` judges this.
         """
         places, surface = self.outline.sampled(elements).points, self.surfaces[zone]
         beside = np.zeros(places.shape[:-1], bool)
-        if not isinstance(surface, Polyline):
+        if not isinstance(surface, Polyline | BodySurface):
             return beside
         moved = np.hypot(*np.moveaxis(self._displacement[elements] - self.tool_motion(zone, places), 2, 0))
-        for corner in surface.points:
+        for corner in surface.points if isinstance(surface, Polyline) else surface.ridges:
             beside |= np.hypot(*np.moveaxis(places - corner, 2, 0)) <= moved
-        return beside & (moved <= LITTLE * self.problem.size)
+        return beside & (isinstance(surface, BodySurface) | (moved <= LITTLE * self.problem.size))
 
     def _same(self, zone: str, here: Faces) -> BoolArray:
         """Whether the face of each place (k, q, 3) is that of each node of its element; a smooth surface has one."""

@@ -17,6 +17,8 @@ AT_END = 1e-9
 """Sine of the angle between the way to the end of an edge and the normal there from which the end itself is nearest."""
 ON_CORNER = 1e-9
 """Distance from a corner over the extent of the points up to which a point is on it."""
+ROUND_OFF = 1e-9
+"""Difference of two fractions of an edge that is none: places on the normal at an end may be on either side of it."""
 CORNER = 1e-6
 """Sine of the angle between two edges from which their joint is a corner."""
 
@@ -94,8 +96,8 @@ class BodySurface:
         offset, (sums, corners) = points - foot, self._ends
         corner, at_corner = np.zeros((2, len(points)), bool)
         for end in (0, 1):
+            at_corner |= (abs(fraction - end) <= ROUND_OFF) & corners[number, end]
             at = np.flatnonzero((fraction == end) & corners[number, end])
-            at_corner[at] = True
             tilted = abs(cross(offset[at], normals[at])) > AT_END * away[number[at], at]
             at = at[tilted & (away[number[at], at] > 0)]
             side = np.where(np.sum(offset[at] * sums[number[at], end], axis=1) < 0, -1.0, 1.0)
@@ -138,6 +140,17 @@ class BodySurface:
                 normals[at, column] = chosen
                 gap[at, column] = np.sum((points[at] - joint) * chosen, axis=1) + self.offset
         return Faces(gap, normals, normals.copy())
+
+    @cached_property
+    def ridges(self) -> Array:
+        """Convex corners (j, 2) of the body at ends of the edges of the surface [L]."""
+        names = {edge.name for edge in self.edges}
+        found = [
+            edge.end
+            for edge, _, after in _neighbors(self.loops)
+            if {edge.name, after.name} & names and cross(edge.normals(np.ones(1)), after.normals(np.zeros(1)))[0] > CORNER
+        ]
+        return np.array(found).reshape(-1, 2)
 
     @cached_property
     def joints(self) -> list[tuple[Array, Array]]:

@@ -2,7 +2,11 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from several_bodies import block, elastic, polygon, problem, rigid
+from bemcontact.problem.body_surface import BodySurface
+from bemcontact.problem.boundary import Boundary
 
 ROOF = (np.array([0.6, 0.8]), np.array([-0.6, 0.8]))
 """Normals on both sides of a ridge, from right to left."""
@@ -30,6 +34,19 @@ def test_places_on_the_normals_at_a_corner_are_told_from_those_inside_an_edge():
     assert np.allclose(feet.normals, [[0, 1], [1, 0], [0, 1]])
     assert np.allclose(feet.gap, [0.5, 0.4, 0.5])
     assert feet.at_corner.tolist() == [True, True, False]
+
+
+@given(st.floats(0, 6.28), st.floats(-100, 100))
+def test_the_place_beyond_a_corner_is_found_in_turned_bodies(angle, away):
+    """Round-off may put the closest place of one that goes on straight beyond a corner on either side of the corner."""
+    c, s = np.cos(angle), np.sin(angle)
+
+    def at(x, y):
+        return [float(away + c * x - s * y), float(away + s * x + c * y)]
+
+    boundary = Boundary(**polygon(bottom=at(-1, 0), right=at(2, 0), top=at(2, 2), left=at(-1, 2)))
+    turned = BodySurface(body="b", elastic=True, edges=boundary.edges, loops=boundary.loops)
+    assert turned.feet([at(2.1, 2), at(-1.3, 2), at(2, 2.5)]).at_corner.all()
 
 
 def test_a_convex_corner_presses_on_a_smooth_boundary_along_its_normal():
