@@ -201,6 +201,20 @@ class SurfaceGaps:
                 return np.stack([x - turn * offset[..., 1], y + turn * offset[..., 0]], axis=-1)
         return np.zeros_like(points)
 
+    def turn_of_normals(self, zone: str, points: Array, normals: Array) -> Array:
+        """Change (k, 2) of normals (k, 2) at points (k, 2) [L] of a surface as its tool turns, or its body deforms."""
+        surface = self.surfaces[zone]
+        if not (isinstance(surface, BodySurface) and surface.elastic):
+            return self.tool_motion(zone, normals) - self.tool_motion(zone, np.zeros((1, 2)))
+        feet = surface.feet(points)
+        element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)
+        shapes = reference_element.derivatives(xi)
+        along, change = (
+            np.einsum("ki,kix->kx", shapes, values[element]) for values in (self.state.points, self.state.displacement)
+        )
+        slope = np.sum(change * normals, axis=1) / np.sum(along**2, axis=1)
+        return -slope[:, None] * along
+
     def distance(self, zone: str, elements: IntArray) -> Array:
         """Distance (k, q) [L] of displaced places of elements (k,) from the displaced surface."""
         return self.exact(zone, self.moved(elements)).gap

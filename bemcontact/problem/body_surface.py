@@ -148,7 +148,8 @@ class BodySurface:
         found = [
             edge.end
             for edge, _, after in _neighbors(self.loops)
-            if {edge.name, after.name} & names and cross(edge.normals(np.ones(1)), after.normals(np.zeros(1)))[0] > CORNER
+            if {edge.name, after.name} & names
+            and cross(edge.normals(np.ones(1)), after.normals(np.zeros(1)))[0] > CORNER
         ]
         return np.array(found).reshape(-1, 2)
 

@@ -208,6 +208,20 @@ def test_press_fit_of_whole_circles(pair, starts):
     assert np.abs(pressure * (disk + ring) / 0.01 - 1).max() < 1e-4
 
 
+@pytest.mark.parametrize("scale", [1.0, 1e3])
+def test_an_interference_moves_no_body_away(scale):
+    """The forces around a disk cancel before and after the motion, in all units of length."""
+    plate = {**block((-12 * scale, 12 * scale), (-12 * scale, 12 * scale), (8,) * 4)}
+    plate["holes"] = [[circle("bore", 5 * scale, start=38, elements=16, hole=True)]]
+    bodies = {
+        "disk": elastic({"outer": [circle("rim", 5 * scale, elements=16)]}),
+        "plate": elastic(plate, HELD, 2000.0),
+    }
+    result = solved(bodies, fit={"between": ["disk", "plate/bore"], "gap": -0.01 * scale})
+    assert result.certified
+    assert result.penetration is None
+
+
 def test_faces_of_a_slot_press_on_each_other_as_on_the_plane_between_them():
     """Two arms, symmetric about y = 1: each has half of the body with a rigid plane as its other half."""
     arms = polygon(
