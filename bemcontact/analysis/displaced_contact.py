@@ -55,7 +55,8 @@ def displaced(
         grooved = other & (beyond < 0) & isinstance(gaps.surfaces[zone], Polyline)
         found.motion[own] -= gaps.tool_motion(zone, at[own])
         turned = np.where(ridge[:, None], face, there.normals)
-        turned = turned + gaps.tool_motion(zone, turned) - gaps.tool_motion(zone, np.zeros((1, 2)))
+        places = at[own] + displacement[own]
+        turned = turned + gaps.turn_of_normals(zone, places - gaps.tool_motion(zone, places), turned)
         found.turn[own] = np.where(other[:, None], 0.0, turned - face)
         found.change[own] = np.where(grooved, 0.0, beyond)
         found.distance[own], found.other[own] = there.gap, other

@@ -22,7 +22,6 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
 from bemcontact.problem.loops import first_meeting, signed_area
-from bemcontact.problem.problem import Problem
 
 DETAIL = 1e-4
 """Length over the size of the body of parts of its boundary that may fold: the tip of a notch."""
@@ -92,16 +91,17 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
     state, mesh = gaps.state, gaps.outline.mesh
     loops = [elements for elements, _ in runs(mesh, np.ones(len(mesh.elements), bool))]
     bodies = [gaps.problem.part_of(mesh.edge_names[mesh.edge[elements[0]]]) for elements in loops]
-    apart = _apart(gaps.problem)
+    problem = gaps.problem
+    stated = {frozenset(problem.sides_of(name)) for name in (*problem.contacts, *problem.bonded)}
     drawn, chords = (
         [values[elements][:, :2].reshape(-1, 2) for elements in loops]
         for values in (state.points, state.points + state.displacement)
     )
     inverted = [signed_area(one) * signed_area(other) < 0 for one, other in zip(drawn, chords, strict=True)]
-    if not any(inverted) and _crossing(chords, bodies, apart, gaps) is None:
+    if not any(inverted) and _crossing(chords, bodies, stated, gaps) is None:
         return None
     places = [gaps.moved(elements) for elements in loops]
-    meeting = _crossing([item[:, :-1].reshape(-1, 2) for item in places], bodies, apart, gaps)
+    meeting = _crossing([item[:, :-1].reshape(-1, 2) for item in places], bodies, stated, gaps)
     if any(inverted):
         turned = chords[inverted.index(True)]
         meeting = turned[np.hypot(*(turned - drawn[inverted.index(True)]).T).argmax()]
@@ -133,10 +133,10 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
         kind=Misfit.ITSELF, depth=float(np.hypot(*(first - second))), allowed=0.0, at=(x, y), edge=edges[0], zone="",
         paired=False,
         words=(
-            f"The body penetrates itself at ({x:.5g}, {y:.5g}), where {crossing} cross after the motion. Contact of a "
-            "body with itself is not computed: parts that should press on each other pass through. Reduce the load to "
-            "that at which they meet, or take half of the body, with a rigid plane in the middle of the slot, if it is "
-            "symmetric."
+            f"The body penetrates itself at ({x:.5g}, {y:.5g}), where {crossing} cross after the motion. No contact "
+            "between them is stated: parts that should press on each other pass through. Give the body a name under "
+            "bodies, and state contact between two of its edges; or reduce the load to that at which they meet; or "
+            "take half of the body, with a rigid plane in the middle of the slot, if it is symmetric."
         ),
     )  # fmt: skip
 
@@ -149,17 +149,10 @@ def _without_details(line: Array, length: float) -> Array:
     return line[kept]
 
 
-def _apart(problem: Problem) -> set[frozenset[str]]:
-    """Pairs of bodies between which neither contact nor a bond is stated."""
-    names = [part.name for part in problem.parts]
-    every = {frozenset((one, other)) for one in names for other in names if one != other}
-    return every - {frozenset(problem.sides_of(name)) for name in (*problem.contacts, *problem.bonded)}
-
-
 def _crossing(
-    loops: Sequence[Array], bodies: Sequence[str], apart: Collection[frozenset[str]], gaps: SurfaceGaps
+    loops: Sequence[Array], bodies: Sequence[str], stated: Collection[frozenset[str]], gaps: SurfaceGaps
 ) -> Array | None:
-    """First point (2,) at which closed lines (k, 2) of one body, or of two that are apart, cross.
+    """First point (2,) at which closed lines (k, 2) of bodies cross between which no contact is stated.
 
     At the tip of a notch strains are not small: neighbors that fold there do not count.
     """
@@ -168,7 +161,7 @@ def _crossing(
     closed = [_without_details(np.vstack([points, points[:1]]), DETAIL * size) for points in loops]
     for i, line in enumerate(closed):
         for j, other in enumerate(closed[: i + 1]):
-            if bodies[i] != bodies[j] and frozenset((bodies[i], bodies[j])) not in apart:
+            if frozenset((bodies[i], bodies[j])) in stated:
                 continue
             point = first_meeting(line, other, tolerance, itself=i == j)
             if point is not None:

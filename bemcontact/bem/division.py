@@ -144,7 +144,7 @@ def _matched(
     fractions: Mapping[str, Array],
     refine: int,
 ) -> tuple[Array, Array, list[tuple[str, Facing]]]:
-    """Ends (e + 1,) before they are cut, elements (e, 3) of an edge that follows others, and pairs of elements.
+    """Ends (e + 1,) before they are cut, elements (e, 3) of an edge that follows others, and facing pairs.
 
     Elements that follow none are cut in equal parts; those that do have the nodes that the closest points give.
     """

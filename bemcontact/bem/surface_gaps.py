@@ -201,6 +201,20 @@ class SurfaceGaps:
                 return np.stack([x - turn * offset[..., 1], y + turn * offset[..., 0]], axis=-1)
         return np.zeros_like(points)
 
+    def turn_of_normals(self, zone: str, points: Array, normals: Array) -> Array:
+        """Change (k, 2) of normals (k, 2) at points (k, 2) [L] of a surface as its tool turns, or its body deforms."""
+        surface = self.surfaces[zone]
+        if not (isinstance(surface, BodySurface) and surface.elastic):
+            return self.tool_motion(zone, normals) - self.tool_motion(zone, np.zeros((1, 2)))
+        feet = surface.feet(points)
+        element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)
+        shapes = reference_element.derivatives(xi)
+        along, change = (
+            np.einsum("ki,kix->kx", shapes, values[element]) for values in (self.state.points, self.state.displacement)
+        )
+        slope = np.sum(change * normals, axis=1) / np.sum(along**2, axis=1)
+        return -slope[:, None] * along
+
     def distance(self, zone: str, elements: IntArray) -> Array:
         """Distance (k, q) [L] of displaced places of elements (k,) from the displaced surface."""
         return self.exact(zone, self.moved(elements)).gap
@@ -253,16 +267,17 @@ class SurfaceGaps:
     def _beside_corner(self, zone: str, elements: IntArray) -> BoolArray:
         """Whether places (k, q) of elements (k,) are nearer to a corner of a polyline than they move, which is little.
 
-        Linear theory leaves open on which side of the corner they come to lie.
+        Linear theory leaves open on which side of the corner they come to lie. Those beside a convex corner of a body,
+        where pairs end, slide along the end however far they move; `placement` judges this.
         """
         places, surface = self.outline.sampled(elements).points, self.surfaces[zone]
         beside = np.zeros(places.shape[:-1], bool)
-        if not isinstance(surface, Polyline):
+        if not isinstance(surface, Polyline | BodySurface):
             return beside
         moved = np.hypot(*np.moveaxis(self._displacement[elements] - self.tool_motion(zone, places), 2, 0))
-        for corner in surface.points:
+        for corner in surface.points if isinstance(surface, Polyline) else surface.ridges:
             beside |= np.hypot(*np.moveaxis(places - corner, 2, 0)) <= moved
-        return beside & (moved <= LITTLE * self.problem.size)
+        return beside & (isinstance(surface, BodySurface) | (moved <= LITTLE * self.problem.size))
 
     def _same(self, zone: str, here: Faces) -> BoolArray:
         """Whether the face of each place (k, q, 3) is that of each node of its element; a smooth surface has one."""
@@ -290,8 +305,8 @@ class SurfaceGaps:
         crosses: BoolArray = (behind | behind[mesh.before] | behind[mesh.elements[:, 2]])[elements, None]
         outside = (before > flush) | snug | (~crosses & (before >= -flush))
         surface = self.surfaces[zone]
-        if isinstance(surface, BodySurface) and surface.elastic:  # opposite to a corner, its own node is compared
-            outside &= ~surface.feet(at.points.reshape(-1, 2)).corner.reshape(outside.shape)
+        if isinstance(surface, BodySurface):
+            outside &= ~self._slides(zone, surface, at.points)
         depth, local = np.where(outside, -after, -np.inf), self.outline.local[elements].copy()
         for crossing in self._crossings(zone, elements, np.where(snug, np.inf, before), crosses, flush):
             if crossing.turned:
@@ -305,6 +320,21 @@ class SurfaceGaps:
         sure = depth > self._second_order(zone)
         hidden = [float(np.max(depth, initial=-np.inf, where=beyond & sure)) for beyond in ended]
         return np.where(np.any(ended, axis=0), -np.inf, depth), behind[elements], hidden, local
+
+    def _slides(self, zone: str, surface: BodySurface, places: Array) -> BoolArray:
+        """Whether a corner is nearest to places (k, q, 2), and pairs that end there are compared in their place.
+
+        Its distance would count along the boundary, which slides. A corner of an elastic body has a node of its own.
+        """
+        feet = surface.feet(places.reshape(-1, 2))
+        beside = feet.at_corner
+        if not surface.elastic and beside.any():
+            nodes = self.state.points[self.paired[zone]].reshape(-1, 2)
+            paired = surface.feet(nodes).points
+            corners, which = np.unique(feet.points[beside], axis=0, return_inverse=True)
+            away = np.hypot(*np.moveaxis(corners[:, None] - paired, 2, 0)).min(axis=1, initial=np.inf)
+            beside[beside] = (away <= FLUSH * self.problem.size)[which.ravel()]
+        return beside.reshape(places.shape[:-1])
 
     def _crossings(
         self, zone: str, elements: IntArray, before: Array, crosses: BoolArray, flush: float
@@ -439,11 +469,16 @@ class SurfaceGaps:
         )
 
     def _may_meet(self, zone: str) -> BoolArray:
-        """Whether each element (m,) is compared with a surface: of a contact of two bodies those of the first alone."""
-        mesh, surface = self.outline.mesh, self.surfaces[zone]
+        """Whether each element (m,) is compared with a surface: of a contact of two bodies those of the first alone.
+
+        Where both sides are on one body, the edges of the first side alone.
+        """
+        mesh, surface, edges = self.outline.mesh, self.surfaces[zone], self.problem.edges_of(zone)
         if not isinstance(surface, BodySurface):
             return np.ones(len(mesh.elements), bool)
-        first = self.problem.part_of(self.problem.edges_of(zone)[0])
+        first = self.problem.part_of(edges[0])
+        if first == surface.body:
+            return np.isin(mesh.edge_names, edges)[mesh.edge]
         return np.array([self.problem.part_of(name) == first for name in mesh.edge_names])[mesh.edge]
 
     def _near(self, zone: str) -> BoolArray:

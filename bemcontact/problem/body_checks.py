@@ -41,7 +41,10 @@ def body_issues(problem: StatedBodies) -> Iterator[Issue]:
             edges = [edge.name for edge in original.boundary.edges]
             for edge in body.conditions:
                 if edge not in edges:
+                    own = edge.removeprefix(name + SEPARATOR)
                     message = unknown_word("edge", edge, edges)
+                    if own in edges:
+                        message = f"conditions of a body name its edges alone: write '{own}' for '{edge}'"
                     yield KeyIssue(path=("bodies", name, "conditions", edge), message=message)
     if all(body.rigid for body in problem.bodies.values()):
         yield Issue(path=("bodies",), message="all bodies are rigid; at least one has to be elastic")
@@ -55,6 +58,8 @@ def _copy_issues(problem: StatedBodies, name: str, body: BodySpec) -> Iterator[I
     originals = [other for other, spec in problem.bodies.items() if spec.copy_of is None]
     if body.copy_of not in problem.bodies:
         yield Issue(path=path, message=unknown_word("body", body.copy_of, originals))
+    elif body.copy_of == name:
+        yield Issue(path=path, message=f"'{name}' cannot be a copy of itself; name another body, or give its boundary")
     elif body.copy_of not in originals:
         of = problem.bodies[body.copy_of].copy_of
         yield Issue(path=path, message=f"'{body.copy_of}' is a copy itself; name its original '{of}'")
@@ -102,6 +107,11 @@ def contact_issues(problem: StatedBodies, tools: Mapping[str, RigidTool]) -> Ite
             elif edge in problem.edge_conditions:
                 message = f"edge '{edge}' has a condition and cannot touch; remove one of the two"
                 yield Issue(path=("contact_zones", name, "edges", i), message=message)
+    touched = {side[0].partition(SEPARATOR)[0] for contact in problem.contacts.values() for side in contact.between}
+    for name in problem.bodies:
+        if not problem.is_elastic(name) and name not in touched:
+            message = f"no contact names the rigid body '{name}', so that nothing touches it; add one, or remove it"
+            yield Issue(path=("bodies", name), message=message)
     yield from _case_issues(problem, edges)
     yield from _tool_issues(problem, tools)
 
@@ -209,6 +219,7 @@ def _tool_issues(problem: StatedBodies, tools: Mapping[str, RigidTool]) -> Itera
 def opposite_issues(problem: StatedBodies) -> Iterator[Issue]:
     """Issues of contacts whose two sides cannot meet, and of meshes that would follow each other in a circle."""
     follows: dict[str, set[str]] = {}
+    pairs: dict[frozenset[str], str] = {}
     for name, zone in problem.bonds.items():
         for part in problem.opposite(name):
             follows.setdefault(zone.surface.edges[part.onto].name, set()).add(part.edge)
@@ -230,12 +241,15 @@ def opposite_issues(problem: StatedBodies) -> Iterator[Issue]:
                 sides = " and ".join(", ".join(side) for side in contact.between)
                 message = f"{sides} are nowhere opposite to each other; look at their places and normals"
                 yield Issue(path=path, message=message)
+            for pair in {frozenset((part.edge, surface.edges[part.onto].name)) for part in parts}:
+                if (other := pairs.setdefault(pair, name)) != name:
+                    message = f"contact of {' and '.join(sorted(pair))} is stated by '{other}' already; remove one"
+                    yield Issue(path=path, message=message)
             if not surface.elastic:
                 continue
             for part in parts:
                 follows.setdefault(surface.edges[part.onto].name, set()).add(part.edge)
-            corners = (blunt_corner(problem.edge(edge), surface) for edge in edges)
-            if (corner := next((at for at in corners if at is not None), None)) is not None:
+            if (corner := blunt_corner([*map(problem.edge, edges)], surface, problem.reach_of(name))) is not None:
                 x, y = corner.tolist()
                 message = (
                     f"the corner of '{surface.body}' at ({x:.5g}, {y:.5g}) is nearest to a part of the other side, "

@@ -11,12 +11,14 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problem.curves import Curve, Edge, cross
 from bemcontact.problem.rigid_surface import RigidSurface, Shape
-from bemcontact.problem.surface_lines import Closest, Faces
+from bemcontact.problem.surface_lines import Closest, Faces, between_normals
 
 AT_END = 1e-9
 """Sine of the angle between the way to the end of an edge and the normal there from which the end itself is nearest."""
 ON_CORNER = 1e-9
 """Distance from a corner over the extent of the points up to which a point is on it."""
+ROUND_OFF = 1e-9
+"""Difference of two fractions of an edge that is none: places on the normal at an end may be on either side of it."""
 CORNER = 1e-6
 """Sine of the angle between two edges from which their joint is a corner."""
 
@@ -31,7 +33,8 @@ class Feet(NamedTuple):
     points : (k, 2) [L]
     gap : (k,) distance as drawn [L], negative inside the body
     normals : (k, 2) unit vectors out of the body
-    corner : (k,) whether it is a corner or an end of the surface, so that other points have it too
+    corner : (k,) whether it is a corner or an end of the surface, and the point is on the normal of no edge there
+    at_corner : (k,) whether it is a corner or an end of the surface, so that other points have it too
     """
 
     edge: IntArray
@@ -40,6 +43,7 @@ class Feet(NamedTuple):
     gap: Array
     normals: Array
     corner: BoolArray
+    at_corner: BoolArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,14 +94,15 @@ class BodySurface:
         for i in sorted({*number.tolist()}):
             normals[number == i] = self.edges[i].normals(fraction[number == i])
         offset, (sums, corners) = points - foot, self._ends
-        corner = np.zeros(len(points), bool)
+        corner, at_corner = np.zeros((2, len(points)), bool)
         for end in (0, 1):
+            at_corner |= (abs(fraction - end) <= ROUND_OFF) & corners[number, end]
             at = np.flatnonzero((fraction == end) & corners[number, end])
             tilted = abs(cross(offset[at], normals[at])) > AT_END * away[number[at], at]
             at = at[tilted & (away[number[at], at] > 0)]
             side = np.where(np.sum(offset[at] * sums[number[at], end], axis=1) < 0, -1.0, 1.0)
             normals[at], corner[at] = side[:, None] * offset[at] / away[number[at], at, None], True
-        return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner)
+        return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner, at_corner)
 
     def beside(self, feet: Feet) -> Array:
         """Normals (k, 2, 2) out of the body on both sides of places that are corners, of others twice their own."""
@@ -118,7 +123,8 @@ class BodySurface:
 
         A point on a corner of this body has the edge to which each side of it, with normals (k, 2, 2) into its own
         body, is turned. So has a corner of the other body that stands in a concave one, up to the distance `reach`
-        (k,) [L].
+        (k,) [L]. A convex corner presses on a smooth boundary along its normal, as far as that is between the normals
+        of the edges.
         """
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in self.closest(points))
         turns = abs(cross(inward[:, 0], inward[:, 1])) > CORNER
@@ -129,9 +135,23 @@ class BodySurface:
             turned = np.einsum("kai,si->kas", inward[at], own)
             for column, side in ((0, 0), (1, 0), (2, 1)):
                 chosen = own[turned[:, side].argmax(axis=1)]
+                if cross(own[0], own[1]) > 0:
+                    chosen = np.where(turns[at, None], chosen, between_normals(inward[at, side], own[:1], own[1:]))
                 normals[at, column] = chosen
                 gap[at, column] = np.sum((points[at] - joint) * chosen, axis=1) + self.offset
         return Faces(gap, normals, normals.copy())
+
+    @cached_property
+    def ridges(self) -> Array:
+        """Convex corners (j, 2) of the body at ends of the edges of the surface [L]."""
+        names = {edge.name for edge in self.edges}
+        found = [
+            edge.end
+            for edge, _, after in _neighbors(self.loops)
+            if {edge.name, after.name} & names
+            and cross(edge.normals(np.ones(1)), after.normals(np.zeros(1)))[0] > CORNER
+        ]
+        return np.array(found).reshape(-1, 2)
 
     @cached_property
     def joints(self) -> list[tuple[Array, Array]]:

@@ -27,6 +27,8 @@ MOST_ELEMENTS = 10_000
 MOST_ENDS = 100
 """Largest number of places where elements of an edge must end that does not state its elements."""
 
+WHOLE_TURN = 360 * (1 + 1e-12)
+"""Largest difference of two angles in degrees: that of a turned circle is a whole turn up to round-off."""
 SIDES = ("start", "end", "both", "middle")
 """Names of the places of the short elements of an edge."""
 
@@ -250,7 +252,7 @@ class EllipseArc(_EdgeBase):
 def _check_sweep(angles: Point) -> None:
     """Refuse an arc without length, or of more than a full turn."""
     sweep = abs(angles[1] - angles[0])
-    if not 0 < sweep <= 360:
+    if not 0 < sweep <= WHOLE_TURN:
         raise invalid(f"angles must differ by more than 0 and at most 360 degrees; found {list(angles)}")
 
 

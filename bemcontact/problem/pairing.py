@@ -18,8 +18,8 @@ HALF = 0.5
 """Difference of fractions of an edge between two samples from which its end is between them."""
 INSIDE = 1e-9
 """Distance from an end of the edge, over its length, where the end is looked at."""
-SHORTEST = 1e-9
-"""Least length of an opposite part over that of its edge: shorter ones are round-off of coordinates."""
+SHORTEST = 1e-6
+"""Least length of an opposite part over that of its edge: shorter ones are round-off of coordinates and corners."""
 SAME = 1e-12
 """Difference of two fractions of an edge that is round-off."""
 
@@ -47,19 +47,30 @@ def opposite_parts(edges: Sequence[Edge], surface: BodySurface, reach: float = n
     points need closest points of their own. The closest point may be a corner of a rigid surface both sides of which
     the place is turned to.
     """
-    most = np.inf
-    if np.isfinite(reach) and edges:
-        at = np.linspace(0.0, 1.0, SAMPLES + 1)
-        most = min(float(surface.feet(edge.points(at)).gap.min()) for edge in edges) + reach
+    most = _largest_gap(edges, surface, reach)
     return [part for edge in edges for part in _parts_of(edge, surface, most)]
 
 
-def blunt_corner(edge: Edge, surface: BodySurface) -> Array | None:
-    """A corner (2,) of a surface to both sides of which an edge is turned where the corner is nearest; None without."""
-    at = np.linspace(INSIDE, 1 - INSIDE, SAMPLES + 1)
-    feet = surface.feet(edge.points(at))
-    blunt = np.flatnonzero(feet.corner & _is_blunt(-edge.normals(at), feet, surface))
-    return feet.points[blunt[0]] if len(blunt) else None
+def _largest_gap(edges: Sequence[Edge], surface: BodySurface, reach: float) -> float:
+    """Gap [L] up to which places of edges are opposite to a surface."""
+    if not np.isfinite(reach):
+        return np.inf
+    at = np.linspace(0.0, 1.0, SAMPLES + 1)
+    return min((float(surface.feet(edge.points(at)).gap.min()) for edge in edges), default=0.0) + reach
+
+
+def blunt_corner(edges: Sequence[Edge], surface: BodySurface, reach: float = np.inf) -> Array | None:
+    """A corner (2,) of a surface to both sides of which an edge is turned where the corner is nearest; None without.
+
+    Corners that are farther away than the nearest place and a reach [L] do not count.
+    """
+    at, most = np.linspace(INSIDE, 1 - INSIDE, SAMPLES + 1), _largest_gap(edges, surface, reach)
+    for edge in edges:
+        feet = surface.feet(edge.points(at))
+        blunt = np.flatnonzero(feet.corner & _is_blunt(-edge.normals(at), feet, surface) & (feet.gap <= most))
+        if len(blunt):
+            return feet.points[blunt[0]]
+    return None
 
 
 def _is_blunt(inward: Array, feet: Feet, surface: BodySurface) -> BoolArray:

@@ -223,6 +223,13 @@ class StatedBodies(SpecModel):
         bonded = {name for sides in self.bonded.values() for side in sides for name in side}
         return {*self.edge_conditions, *bonded}.union(*(case.conditions for case in self.load_cases.values()))
 
+    def reach_of(self, contact: str) -> float:
+        """Gap beside the nearest place [L] up to which the sides of a contact may meet; infinite for stated edges."""
+        between = self.contacts[contact].between if contact in self.contacts else ()
+        if not any(SEPARATOR not in side[0] for side in between):
+            return np.inf
+        return REACH * min(size_of_edges(self.boundary_of(body).edges) for body in self.sides_of(contact))
+
     def opposite(self, contact: str) -> tuple[OppositePart, ...]:
         """Parts of the edges of the first body that are opposite to the second one of a contact, or of a bond."""
         if contact not in self._opposite:
@@ -230,12 +237,7 @@ class StatedBodies(SpecModel):
             names = self.edges_of(contact) if zone is None else zone.edges
             surface = (zone or self.zones[contact]).surface
             assert isinstance(surface, BodySurface)
-            whole = contact in self.contacts and any(
-                SEPARATOR not in side[0] for side in self.contacts[contact].between
-            )
-            sizes = [size_of_edges(self.boundary_of(body).edges) for body in self.sides_of(contact)] if whole else []
-            reach = REACH * min(sizes, default=np.inf)
-            parts = opposite_parts([edges[name] for name in names], surface, reach)
+            parts = opposite_parts([edges[name] for name in names], surface, self.reach_of(contact))
             self._opposite[contact] = tuple(parts)
         return self._opposite[contact]
 

@@ -178,7 +178,7 @@ class Polyline(SpecModel):
         ridges, distances = self._ridges_beside(points)
         turn, lefts = cross(inward[:, 0], inward[:, 1]), self.sides.lefts
         own, straight = _pressed_normals(inward, turn, held)
-        within = [_dot(_between(own[:, 1], lefts[i + 1], lefts[i]), own[:, 1]) for i in ridges.T]
+        within = [_dot(between_normals(own[:, 1], lefts[i + 1], lefts[i]), own[:, 1]) for i in ridges.T]
         within = np.where(np.isfinite(distances), np.transpose(within), -np.inf)
         near = distances <= np.where(turn < 0, reach, 0.0)[:, None] + ON_CORNER * self._extent(points)
         flat, smooth = near.any(axis=1), straight & np.isfinite(distances).any(axis=1)
@@ -187,7 +187,7 @@ class Polyline(SpecModel):
         before, after, offset = lefts[which], lefts[which + 1], points - self.sides.corners[which + 1]
         for column in range(3):
             body = own[:, column]
-            pressing, tilt = _between(body, after, before), _dot(held.normals[:, column], body)
+            pressing, tilt = between_normals(body, after, before), _dot(held.normals[:, column], body)
             over, face = _over(offset, pressing, before, after)
             opens = over >= abs(cross(offset, body) * cross(held.normals[:, column], body)) / 2
             inside = _dot(pressing, body) >= 1 - ALIKE
@@ -442,7 +442,7 @@ def _dot(a: Array, b: Array) -> Array:
     return np.einsum("ki,ki->k", a, b)
 
 
-def _between(vectors: Array, first: Array, last: Array) -> Array:
+def between_normals(vectors: Array, first: Array, last: Array) -> Array:
     """Unit vectors along vectors (k, 2), or the nearer of two unit normals where these are not on either side."""
     inside = (cross(first, vectors) >= 0) & (cross(vectors, last) >= 0)
     nearer = np.einsum("ki,ki->k", vectors, first) > np.einsum("ki,ki->k", vectors, last)

@@ -1,0 +1,249 @@
+"""Several bodies from spec to result: what the joined equations must give, whatever the bodies are."""
+
+import math
+
+import numpy as np
+import pytest
+from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, problem, rigid
+
+import bemcontact
+from bemcontact import Problem
+
+PRESSED = {"top": {"pressure": 5.0}}
+
+
+def solved(*args, **contacts):
+    return bemcontact.solve(problem(*args, **contacts))
+
+
+def stack(counts, exchanged=False, x=(0, 3)):
+    """Blocks of different moduli, guided on one side, under uniform pressure."""
+    bodies, contacts = {}, {}
+    for i, elements in enumerate(counts):
+        conditions = {**GUIDED, **({"bottom": {"displacement": {"y": 0}}} if i == 0 else {})}
+        conditions |= PRESSED if i == len(counts) - 1 else {}
+        bodies[f"b{i}"] = elastic(block(x, (i, i + 1), elements), conditions, modulus=1000.0 * (1 + i % 3))
+        if i:
+            pair = [f"b{i}/bottom", f"b{i - 1}/top"]
+            contacts[f"c{i}"] = pair[::-1] if exchanged else pair
+    return bodies, contacts
+
+
+@pytest.mark.parametrize("exchanged", [False, True])
+@pytest.mark.parametrize("number", [2, 4])
+def test_patch_of_blocks_with_unequal_meshes(number, exchanged):
+    bodies, contacts = stack([(3 + i, 2 + i % 2, 7 - i, 1 + i % 3) for i in range(number)], exchanged)
+    result = solved(bodies, **contacts)
+    assert result.certified
+    assert np.abs(result.solution.pressure - 5).max() < 1e-11
+
+
+@pytest.mark.parametrize("exchanged", [False, True])
+def test_blocks_of_equal_width_hold_whichever_is_stated_first(exchanged):
+    """The softer one gets wider: its corner passes that of the other one, and nothing penetrates."""
+    bodies = {
+        "up": elastic(block((-1, 1), (0, 1), (8,) * 4), {"top": {"displacement": {"x": 0, "y": -0.01}}}, 2000.0),
+        "low": elastic(block((-1, 1), (-1, 0), (8,) * 4), HELD),
+    }
+    result = solved(bodies, c=["low", "up"] if exchanged else ["up", "low"])
+    assert result.certified
+    assert result.penetration is None
+
+
+def test_a_wide_block_on_a_narrow_one_does_not_penetrate_beyond_the_corner():
+    bodies = {
+        "up": elastic(block((-2, 2), (0, 1)), {"top": {"displacement": {"x": 0, "y": -0.01}}}, 3000.0),
+        "low": elastic(block((-0.5, 0.5), (-1, 0)), HELD),
+    }
+    result = solved(bodies, 0.03, c=["up", "low"])
+    assert result.certified
+    assert result.penetration is None
+
+
+def test_an_arc_does_not_penetrate_beyond_the_corner_of_a_rigid_body():
+    arc = [
+        {"name": "under", "kind": "arc", "center": [0, 20], "start": [-2, 20 - 396**0.5], "end": [2, 20 - 396**0.5]},
+        {"name": "right", "end": [2, 2]},
+        {"name": "top", "end": [-2, 2]},
+        {"name": "left"},
+    ]
+    above = elastic({"outer": arc}, {"top": {"pressure": 2.0}}, 150.0)
+    result = solved({"up": above, "low": rigid(block((-0.6, 0.6), (-2, 0)))}, 0.05, c=["low", "up"])
+    assert result.certified
+    assert result.penetration is None
+
+
+ROOF = polygon(right=(2, 0), under=(-1, -0.3), left=(5, -0.3))
+
+
+@pytest.mark.parametrize(
+    ("outline", "surface"),
+    [
+        (block((-1, 6), (-1, 0)), {"kind": "plane", "point": [0, 0], "normal": [0, 1]}),
+        (ROOF, {"kind": "polyline", "points": [[-1, -0.3], [2, 0], [5, -0.3]]}),
+        (
+            {"outer": [{"name": "rim", "kind": "arc", "center": [2, -30], "radius": 30, "angles": [0, 360]}]},
+            {"kind": "circle", "center": [2, -30], "radius": 30, "body": "outside"},
+        ),
+    ],
+)
+@pytest.mark.parametrize("motion", [{"force": {"y": 6.0}}, {"displacement": {"y": 0.01}}])
+def test_a_rigid_outline_is_the_surface_with_the_same_shape(outline, surface, motion):
+    own = elastic(block((0, 4), (0, 3), (20, 8, 8, 8)), {"top": {"displacement": {"x": 0, "y": 0}}})
+    tools = {"ram": {"zones": "z", **motion}}
+    many = Problem(
+        name="outline", bodies={"own": own, "tool": rigid(outline)}, tools=tools, accuracy=None,
+        contacts={"z": {"between": ["own/bottom", "tool"]}},
+    )  # fmt: skip
+    zones = {"z": {"edges": ["bottom"], "surface": surface}}
+    one = Problem(name="surface", **own, tools=tools, accuracy=None, contact_zones=zones)
+    pressures = [bemcontact.solve(item).solution.pressure for item in (many, one)]
+    assert np.abs(pressures[0] - pressures[1]).max() < 1e-10 * pressures[1].max()
+
+
+def roller(start=-90.0, *, modulus=500.0, exchanged=False, turn=0.0, scale=1.0):
+    """A half disk that is pressed on a block."""
+    c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
+
+    def at(x, y):
+        return [scale * (c * x - s * y), scale * (s * x + c * y)]
+
+    disk = [
+        {"name": "under", "kind": "arc", "start": at(-4, 4), "end": at(4, 4), "center": at(0, 4), "elements": 40},
+        {"name": "side", "end": at(4, 5), "elements": 3},
+        {"name": "top", "end": at(-4, 5), "elements": 6},
+        {"name": "other side", "elements": 3},
+    ]
+    corners = [(-6, -6), (6, -6), (6, 0), (-6, 0)]
+    names = ("bottom", "right", "top", "left")
+    base = [
+        {"name": name, "start": at(*a), "end": at(*b), "elements": 6}
+        for name, a, b in zip(names, corners, [*corners[1:], corners[0]], strict=True)
+    ]
+    bodies = {
+        "disk": elastic({"outer": disk}, {"top": {"pressure": 2.0}}),
+        "base": elastic({"outer": base}, HELD, modulus),
+    }
+    return problem(bodies, c=["base/top", "disk/under"] if exchanged else ["disk/under", "base/top"])
+
+
+@pytest.mark.parametrize(("turn", "scale"), [(30.0, 1.0), (90.0, 1e3), (217.0, 1e-3)])
+def test_turned_bodies_of_other_size_have_the_same_pressures(turn, scale):
+    one, other = (bemcontact.solve(item).solution.pressure for item in (roller(), roller(turn=turn, scale=scale)))
+    assert np.abs(one - other).max() < 1e-9 * one.max()
+
+
+def test_a_million_times_stiffer_body_is_rigid():
+    """The pressure differs by the ratio of the moduli, 1e-6, of itself."""
+    stiff = roller(modulus=1e9)
+    disk = stiff.bodies["disk"]
+    plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+    alone = Problem(
+        name="alone", material=disk.material, boundary=disk.boundary, conditions=disk.conditions, accuracy=None,
+        contact_zones={"c": {"edges": ["under"], "surface": plane}},
+    )  # fmt: skip
+    one, other = (bemcontact.solve(item).solution.pressure for item in (stiff, alone))
+    assert np.abs(one - other).max() < 1e-6 * other.max()
+
+
+def test_force_and_moment_of_a_contact_are_those_of_the_loads():
+    """The half disk is free but for contact: 16 along the normal, and no moment about its axis of symmetry."""
+    result = bemcontact.solve(roller())
+    contact, pressure = result.contact, result.solution.pressure
+    force = contact.weights * pressure
+    total = force @ contact.normals
+    moment = np.sum(
+        force * (contact.points[:, 0] * contact.normals[:, 1] - contact.points[:, 1] * contact.normals[:, 0])
+    )
+    assert np.allclose(total, [0, 16], atol=1e-11)
+    assert moment == pytest.approx(0, abs=1e-11)
+
+
+@pytest.mark.parametrize("formulation", ["qp1", "qp2", "qp3", "complementarity"])
+def test_all_formulations_give_the_same(formulation):
+    spec = roller()
+    reference = bemcontact.solve(spec).solution.pressure
+    own = bemcontact.solve(spec, formulation=formulation).solution.pressure
+    assert np.abs(own - reference).max() < 1e-7 * reference.max()
+
+
+def test_a_copy_is_what_is_stated_by_hand():
+    half = [
+        {"name": "under", "kind": "arc", "start": [-4, 4], "end": [4, 4], "center": [0, 4], "elements": 24},
+        {"name": "side", "end": [4, 5], "elements": 2},
+        {"name": "top", "end": [-4, 5], "elements": 6},
+        {"name": "other side", "elements": 2},
+    ]
+    by_hand = [
+        {**edge, **{key: [-edge[key][0], -edge[key][1]] for key in ("start", "end", "center") if key in edge}}
+        for edge in half
+    ]
+    held = {"top": {"displacement": {"x": 0, "y": 0}}}
+    up = elastic({"outer": half}, {"top": {"pressure": 2.0}})
+    copy = {"copy_of": "up", "rotate": 180, "about": [0, 1], "shift": [0, -2], "conditions": held}
+    pressures = [
+        solved({"up": up, "low": low}, c=["up/under", "low/under"]).solution.pressure
+        for low in (copy, elastic({"outer": by_hand}, held))
+    ]
+    assert np.abs(pressures[0] - pressures[1]).max() < 1e-11 * pressures[0].max()
+
+
+@pytest.mark.parametrize("starts", [(37, 124), (190, 211), (0, 0)])
+@pytest.mark.parametrize("pair", [["disk/rim", "ring/bore"], ["ring/bore", "disk/rim"]])
+def test_press_fit_of_whole_circles(pair, starts):
+    """Lamé: p = interference / (c1 + c2), uniform, wherever the circles begin; the mesh gives 1e-4 (fourth order)."""
+    bodies = {
+        "disk": elastic({"outer": [circle("rim", 5, start=starts[0], elements=24)]}),
+        "ring": elastic(
+            {
+                "outer": [circle("outside", 8, elements=24)],
+                "holes": [[circle("bore", 5, start=starts[1], elements=24, hole=True)]],
+            },
+            modulus=2000.0,
+        ),
+    }
+    pressure = solved(bodies, fit={"between": pair, "gap": -0.01}).solution.pressure
+    disk = 5 * 1.3 * 0.4 / 1000
+    ring = 5 * 1.3 / 2000 * (0.4 * 25 + 64) / (64 - 25)
+    assert np.abs(pressure * (disk + ring) / 0.01 - 1).max() < 1e-4
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e3])
+def test_an_interference_moves_no_body_away(scale):
+    """The forces around a disk cancel before and after the motion, in all units of length."""
+    plate = {**block((-12 * scale, 12 * scale), (-12 * scale, 12 * scale), (8,) * 4)}
+    plate["holes"] = [[circle("bore", 5 * scale, start=38, elements=16, hole=True)]]
+    bodies = {
+        "disk": elastic({"outer": [circle("rim", 5 * scale, elements=16)]}),
+        "plate": elastic(plate, HELD, 2000.0),
+    }
+    result = solved(bodies, fit={"between": ["disk", "plate/bore"], "gap": -0.01 * scale})
+    assert result.certified
+    assert result.penetration is None
+
+
+def test_faces_of_a_slot_press_on_each_other_as_on_the_plane_between_them():
+    """Two arms, symmetric about y = 1: each has half of the body with a rigid plane as its other half."""
+    arms = polygon(
+        bottom=(0, 0), tip=(6, 0), **{"low face": (6, 0.8)}, root=(2, 0.8), **{"high face": (2, 1.2)},
+        **{"other tip": (6, 1.2)}, top=(6, 2), left=(0, 2),
+    )  # fmt: skip
+    half = polygon(axis=(0, 1), root=(2, 1), **{"high face": (2, 1.2)}, tip=(6, 1.2), top=(6, 2), left=(0, 2))
+    counts = {"low face": 32, "high face": 32, "root": 4, "axis": 8, "left": 8}
+    for boundary in (arms, half):
+        for edge in boundary["outer"]:
+            edge["elements"] = 6 if "tip" in edge["name"] else counts.get(edge["name"], 24)
+    next(edge for edge in half["outer"] if edge["name"] == "root")["elements"] = 2
+    held = {"left": {"displacement": {"x": 0, "y": 0}}}
+    body = elastic(arms, {**held, "top": {"pressure": 1.0}, "bottom": {"pressure": 1.0}})
+    closed = solved({"clip": body}, c=["clip/high face", "clip/low face"])
+    plane = {"kind": "plane", "point": [0, 1], "normal": [0, 1]}
+    alone = bemcontact.solve(
+        Problem(
+            name="half", **elastic(half, {**held, "axis": {"displacement": {"y": 0}}, "top": {"pressure": 1.0}}),
+            accuracy=None, contact_zones={"c": {"edges": ["high face"], "surface": plane}},
+        )
+    )  # fmt: skip
+    forces = [float(np.sum(item.contact.weights * item.solution.pressure)) for item in (closed, alone)]
+    assert closed.penetration is None
+    assert forces[0] == pytest.approx(forces[1], rel=5e-3)

@@ -1,0 +1,120 @@
+"""Several bodies as they are stated: what each mistake is told, and what copies are."""
+
+import math
+
+import numpy as np
+import pytest
+from messages import assert_states
+from several_bodies import HELD, block, circle, elastic, problem
+
+import bemcontact
+
+SPEC = """\
+name: two blocks
+materials: {steel: {young_modulus: 1000, poisson_ratio: 0.3}}
+bodies:
+  up:
+    material: steel
+    boundary:
+      outer:
+        - {name: bottom, start: [0, 0], end: [2, 0]}
+        - {name: right, end: [2, 1]}
+        - {name: top, end: [0, 1]}
+        - {name: left}
+    conditions: {left: {displacement: {x: 0}}, top: {pressure: 1}}
+  low:
+    material: {young_modulus: 500, poisson_ratio: 0.3}
+    boundary:
+      outer:
+        - {name: bottom, start: [-1, -1], end: [3, -1]}
+        - {name: right, end: [3, 0]}
+        - {name: top, end: [-1, 0]}
+        - {name: left}
+    conditions: {bottom: {displacement: {x: 0, y: 0}}}
+contacts:
+  face: {between: [up/bottom, low/top]}
+"""
+BETWEEN = "[up/bottom, low/top]"
+COPY = "{copy_of: up, shift: [0, -1], conditions: {bottom: {displacement: {x: 0, y: 0}}}}"
+
+
+def with_copy(stated: str) -> str:
+    return SPEC[: SPEC.index("  low:")] + f"  low: {stated}\ncontacts: {{face: {{between: [up, low]}}}}\n"
+
+
+MISTAKES = [
+    (SPEC.replace(BETWEEN, "up/bottom"), "23:19: contacts.face.between", "two bodies…BODY/EDGE…the text 'up/bottom'"),
+    (SPEC.replace(BETWEEN, "[up, low, up]"), "23:19: contacts.face.between", "a list of 3"),
+    (SPEC.replace(BETWEEN, "[upp, low]"), "23:20: contacts.face.between[0]", "unknown body 'upp'…did you mean 'up'"),
+    (SPEC.replace(BETWEEN, "[up/botom, low]"), "23:20: contacts.face.between[0]", "'up/botom'…'up/bottom'"),
+    (SPEC.replace(BETWEEN, "[up, up]"), "23:19: contacts.face.between", "'up' is on both sides"),
+    (SPEC.replace(BETWEEN, "[up/top, low]"), "23:20: contacts.face.between[0]", "'up/top' has a condition…remove"),
+    (SPEC.replace(BETWEEN, "[[up/bottom, low/left], low/top]"), "23:20: contacts.face.between[0]", "of one body"),
+    (SPEC.replace(BETWEEN, "[up/bottom, low/right]"), "23:19: contacts.face.between", "nowhere opposite"),
+    (SPEC.replace(BETWEEN, "[up/right, low/left]"), "23:19: contacts.face.between", "nowhere opposite"),
+    (SPEC + f"  again: {{between: {BETWEEN}}}\n", "24:20: contacts.again.between", "stated by 'face' already"),
+    (SPEC[: SPEC.index("contacts:")], "1:1: contacts", "nothing touches"),
+    (SPEC.replace("material: steel", "material: stel"), "5:15: bodies.up.material", "did you mean 'steel'"),
+    (SPEC.replace("material: steel", "rotate: 3"), "4:3: bodies.up", "copy_of"),
+    (SPEC.replace("  up:", "  up/er:").replace("up/bot", "up/er/bot"), "4:3: bodies.up/er", "must not contain /"),
+    (SPEC.replace("{left: {d", "{up/left: {d"), "12:18: bodies.up.conditions.up/left", "write 'left' for 'up/left'"),
+    (SPEC.replace("material: {young_modulus: 500, poisson_ratio: 0.3}", "rigid: true"), "13:3: bodies.low", "rigid"),
+    (SPEC + "conditions: {up/top: {pressure: 1}}\n", "24:1: conditions", "bodies.NAME.conditions"),
+    (SPEC + "tools: {ram: {zones: face, force: {y: 1}}}\n", "24:22: tools.ram.zones", "two elastic bodies"),
+    (SPEC + "load_cases: {a: {loads: {gravity: {density: 1, acceleration: [0, -1]}}}}\n", "24:18: load_cases.a.loads",
+     "load_cases.a.bodies.NAME"),
+    (with_copy(COPY.replace("of: up", "of: upp")), "13:18: bodies.low.copy_of", "unknown body 'upp'"),
+    (with_copy(COPY.replace("of: up", "of: low")), "13:18: bodies.low.copy_of", "copy of itself"),
+    (with_copy("{copy_of: up, shift: [0, -1]}"), "13:18: bodies.low.copy_of", "conditions…state those of 'low'"),
+    (with_copy(COPY.replace("of: up", "of: up, material: steel")), "13:8: bodies.low", "remove"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "start", "facts"), MISTAKES)
+def test_a_mistake_is_one_sentence_with_its_place(text, start, facts):
+    with pytest.raises(bemcontact.SpecError) as caught:
+        bemcontact.loads(text, "two.yaml")
+    lines = str(caught.value).splitlines()
+    assert lines[0].startswith(f"two.yaml:{start}")
+    assert_states(lines[0], facts)
+    assert len(lines) == 1
+
+
+def test_what_is_right_is_read():
+    assert bemcontact.loads(SPEC).several
+    assert bemcontact.loads(with_copy(COPY)).sides_of("face") == ("up", "low")
+
+
+def test_a_rigid_body_that_nothing_touches_is_refused():
+    """It would look as if it were in the way of others, and would be nowhere."""
+    outline = "{outer: [{name: a, start: [5, 5], end: [6, 5]}, {name: b, end: [5, 6]}, {name: c}]}"
+    lone = f"  lone: {{rigid: true, boundary: {outline}}}\n"
+    with pytest.raises(bemcontact.SpecError, match="no contact names the rigid body 'lone'"):
+        bemcontact.loads(SPEC.replace("contacts:\n", lone + "contacts:\n"))
+
+
+@pytest.mark.parametrize("turn", [30.0, 37.0, 90.0, 217.3])
+def test_a_copy_is_turned_about_its_point_and_then_shifted(turn):
+    low = {"copy_of": "up", "rotate": turn, "about": [1, 2], "shift": [3, -4], "conditions": HELD}
+    spec = problem({"up": elastic(block((0, 2), (0, 1))), "low": low, "base": elastic(block((0, 2), (-1, 0)), HELD)},
+                   accuracy=0.01, touch=["up", "base"])  # fmt: skip
+    angle = math.radians(turn)
+    R = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    for edge in ("bottom", "right", "top", "left"):
+        own, its = (spec.edge(f"{body}/{edge}") for body in ("up", "low"))
+        at = np.linspace(0, 1, 5)
+        assert np.allclose(its.points(at), (own.points(at) - [1, 2]) @ R.T + [1, 2] + [3, -4], atol=1e-14)
+        assert np.allclose(its.normals(at), own.normals(at) @ R.T, atol=1e-14)
+
+
+@pytest.mark.parametrize("turn", [17.3, 33.3, 123.4])
+def test_a_turned_circle_stays_a_whole_one(turn):
+    """The two angles of an edge need not differ by exactly 360 after the same number is added to both."""
+    bodies = {
+        "disk": elastic({"outer": [circle("rim", 1, elements=16)]}),
+        "other": {"copy_of": "disk", "rotate": turn, "shift": [0, -2], "conditions": {}},
+        "base": elastic(block((-2, 2), (-4, -3), (8,) * 4), HELD),
+    }
+    spec = problem(bodies, one=["disk", "other"], two=["other", "base"])
+    meshed = spec.with_element_ends({"other/rim": [i / 10 for i in range(1, 10)]}).with_value("contacts.one.gap", 0.1)
+    assert meshed.edge("other/rim").length == pytest.approx(2 * math.pi)
