@@ -380,6 +380,7 @@ BESIDE = {
 WITHOUT_MODULE = {
     "test_architecture.py": "the package as a whole",
     "test_packaging.py": "the wheel",
+    "analysis/test_two_bodies.py": "two elastic bodies against closed forms, through all rooms",
     "cli/test_hostile_input.py": "hidden characters, full disks and little memory, through all rooms",
     "problem/test_range.py": "numbers of any size at any place of a problem",
     "spec/test_limits.py": "the limits of a spec, through reading, document and parser",

@@ -8,7 +8,7 @@ the one relative to B, on which the contact of one body with a rigid surface is 
 from dataclasses import dataclass
 
 import numpy as np
-from finite_elements_bodies import along_x, rectangle_ray
+from finite_elements_bodies import along_x, rectangle_ray, upwards
 from finite_elements_contact import (
     SHAPES,
     Array,
@@ -117,13 +117,6 @@ def gaps(nodes: Array, opposite: Array, normals: Array) -> Array:
     return np.sum(between * normals, axis=1)
 
 
-def reaching(end: float, full: float, parts: int, *, far: tuple[float, float, int, float]) -> tuple[Array, float]:
-    """Element ends along a side, small around the expected end of contact, and where candidates end: at twice that."""
-    return graded(
-        (0, 0.85 * end, 14, 0.35), (0.85 * end, 1.1 * end, 12, 1), (1.1 * end, 2 * end, 8, 6), far, parts=parts
-    ), 2 * end
-
-
 def horizontal(level: float) -> Field:
     return lambda x, y: y - level
 
@@ -133,18 +126,20 @@ def up_to(level: Field, coordinate: Field, end: float) -> Field:
     return lambda x, y: np.where(coordinate(x, y) < end + 1e-9 * abs(end), level(x, y), 1.0)
 
 
-def upwards(x: Array, y: Array) -> tuple[Array, Array]:
-    return np.zeros_like(x), np.ones_like(x)
+def depths(end: float, size: float, parts: int) -> Array:
+    """Element ends from 0 to 1 below a contact of half-width `end` on a body of this size."""
+    near = min(1.5 * end / size, 0.4)
+    return graded((0, near, 11, 2.5), (near, 1, 12, 8), parts=parts)
 
 
-def quarter_of_cylinder(radius: float, center: float, angle: Array, parts: int) -> tuple[Array, Array, Place]:
-    """Angles in degrees from the lowest point, depths, and the place of both, for a quarter with its center at (0, y)."""
+def quarter_of_cylinder(radius: float, center: float) -> Place:
+    """Place of an angle in degrees from the lowest point and a depth, for a quarter with its center at (0, y)."""
 
     def place(s: Array, t: Array) -> tuple[Array, Array]:
         x, y = radius * np.sin(np.radians(s)), center - radius * np.cos(np.radians(s))
         return x + t * (radius / 2 * s / 90 - x), y + t * (center - y)
 
-    return angle, graded((0, 1, 22, 60), parts=parts), place
+    return place
 
 
 def roller_on_block(
@@ -160,14 +155,13 @@ def roller_on_block(
     load : on the quarter, per thickness [p L]
     end : expected half-width [L]
     """
-    angle_end = float(np.degrees(np.arcsin(end / radius)))
+    to = float(np.degrees(np.arcsin(end / radius)))
+    reach = 2 * to
     angle = graded(
-        (0, 0.85 * angle_end, 14, 0.35), (0.85 * angle_end, 1.1 * angle_end, 12, 1), (1.1 * angle_end, 2 * angle_end, 8, 6),
-        (2 * angle_end, 90, 16, 6), parts=parts,
-    )  # fmt: skip
-    reach = 2 * angle_end
+        (0, 0.85 * to, 14, 0.35), (0.85 * to, 1.1 * to, 12, 1), (1.1 * to, reach, 8, 6), (reach, 90, 16, 6), parts=parts
+    )
     roller = ElasticBody(
-        mesh=mapped(*quarter_of_cylinder(radius, radius, angle, parts)),
+        mesh=mapped(angle, depths(end, radius, parts), quarter_of_cylinder(radius, radius)),
         young_modulus=moduli[0], poisson_ratio=0.3, held=((along_x, 0),),
     )  # fmt: skip
     foot = radius * np.sin(np.radians(reach))
@@ -178,15 +172,15 @@ def roller_on_block(
 
     along = np.append(angle[angle <= reach + 1e-9], reach + graded((0, 1, 16, 40), parts=parts)[1:])
     block = ElasticBody(
-        mesh=mapped(along, graded((0, 1, 22, 150), parts=parts), lambda s, t: (across(s), -height * t)),
+        mesh=mapped(along, depths(end, height, parts), lambda s, t: (across(s), -height * t)),
         young_modulus=moduli[1], poisson_ratio=0.3, held=((along_x, 0), (horizontal(-height), 1)),
     )  # fmt: skip
     under = up_to(lambda x, y: np.where(y < radius - 1e-6, np.hypot(x, y - radius) - radius, 1.0), along_x, foot)
+    face = up_to(horizontal(0.0), along_x, foot)
+    pushed = roller.traction(horizontal(radius), (0, -load / radius))
     return press_together(
-        Side(body=roller, load=roller.traction(horizontal(radius), (0, -load / radius)), level=under, coordinate=along_x),
-        Side(
-            body=block, load=np.zeros(block.freedoms.size), level=up_to(horizontal(0.0), along_x, foot), coordinate=along_x
-        ),
+        Side(body=roller, load=pushed, level=under, coordinate=along_x),
+        Side(body=block, load=np.zeros(block.freedoms.size), level=face, coordinate=along_x),
         upwards,
     )
 
@@ -225,9 +219,9 @@ def pin_in_plate(parts: int, *, clearance: float, load: float, end: float) -> To
         return np.where(s <= reach, of_pin(np.minimum(s, reach)), last + (90 - last) * (s - reach))
 
     rest = graded((0, 1, 10, 2), parts=parts)[1:]
-    _, depth, quarter = quarter_of_cylinder(10, -clearance, near, parts)
+    quarter, deep = quarter_of_cylinder(10, -clearance), depths(10 * np.radians(end), 10, parts)
     pin = ElasticBody(
-        mesh=mapped(np.append(near, reach + rest), depth, lambda s, t: quarter(own(s), t)),
+        mesh=mapped(np.append(near, reach + rest), deep, lambda s, t: quarter(own(s), t)),
         young_modulus=210e3, poisson_ratio=0.3, held=((along_x, 0),),
     )  # fmt: skip
 
@@ -243,7 +237,7 @@ def pin_in_plate(parts: int, *, clearance: float, load: float, end: float) -> To
     far = [(reach, 45.0, 6, 2), (45.0, 135.0, 14, 1)] if reach < 45 else [(reach, 135.0, 12, 2)]
     angle = np.append(near, graded(*far, (135.0, 180.0, 6, 1), parts=parts)[1:])
     plate = ElasticBody(
-        mesh=mapped(angle, graded((0, 1, 22, 60), parts=parts), ray),
+        mesh=mapped(angle, depths(10 * np.radians(end), 30, parts), ray),
         young_modulus=70e3, poisson_ratio=0.3, held=((along_x, 0), (horizontal(40.0), 1)),
     )  # fmt: skip
     seen = from_bottom(0.0)
@@ -291,7 +285,7 @@ def layer_on_block(parts: int, *, pressure: float, end: float) -> Touch:
         young_modulus=1e3, poisson_ratio=0.3, held=((along_x, 0),),
     )  # fmt: skip
     base = ElasticBody(
-        mesh=mapped(x, graded((0, 1, 22, 60), parts=parts), lambda s, t: (s, -10 * t)),
+        mesh=mapped(x, depths(end, 10, parts), lambda s, t: (s, -10 * t)),
         young_modulus=2e3, poisson_ratio=0.3, held=((along_x, 0), (horizontal(-10.0), 1)),
     )  # fmt: skip
     face = up_to(horizontal(0.0), along_x, reach)
