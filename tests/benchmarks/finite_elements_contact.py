@@ -7,6 +7,7 @@ candidate nodes along the normals of the rigid surface; then an active set on ga
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -290,8 +291,22 @@ def local_axes(body: ElasticBody, nodes: IntArray, normals: Array) -> tuple[spar
     return sparse.csr_matrix(entries, shape=(size, size)), freedom
 
 
+class Stiff(Protocol):
+    """What contact needs of a body, or of several."""
+
+    @property
+    def stiffness(self) -> sparse.csr_matrix:
+        """K."""
+        ...
+
+    @property
+    def held_freedoms(self) -> IntArray:
+        """Unknowns that are zero."""
+        ...
+
+
 def contact_state(
-    body: ElasticBody, load: Array, turned: sparse.csr_matrix, freedom: IntArray, gap: Array
+    body: Stiff, load: Array, turned: sparse.csr_matrix, freedom: IntArray, gap: Array
 ) -> tuple[Array, Array]:
     """Displacement u' of all unknowns and forces along the normals of the candidates.
 
