@@ -379,11 +379,8 @@ BESIDE = {
 WITHOUT_MODULE = {
     "test_architecture.py": "the package as a whole",
     "test_packaging.py": "the wheel",
-<<<<<<< HEAD
     "analysis/test_several_bodies.py": "several bodies through all rooms, from spec to result",
-=======
     "analysis/test_two_bodies.py": "two elastic bodies against closed forms, through all rooms",
->>>>>>> w-fe
     "cli/test_hostile_input.py": "hidden characters, full disks and little memory, through all rooms",
     "problem/test_range.py": "numbers of any size at any place of a problem",
     "spec/test_limits.py": "the limits of a spec, through reading, document and parser",
