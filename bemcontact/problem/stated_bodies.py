@@ -224,9 +224,11 @@ class StatedBodies(SpecModel):
         return {*self.edge_conditions, *bonded}.union(*(case.conditions for case in self.load_cases.values()))
 
     def reach_of(self, contact: str) -> float:
-        """Gap beside the nearest place [L] up to which the sides of a contact may meet; infinite for stated edges."""
-        between = self.contacts[contact].between if contact in self.contacts else ()
-        if not any(SEPARATOR not in side[0] for side in between):
+        """Gap beside the nearest place [L] up to which a body may meet another one; infinite for stated edges of it."""
+        if contact not in self.contacts:
+            return np.inf
+        first, second = self.contacts[contact].between
+        if SEPARATOR in (first if self.is_elastic(_body_in(first)) else second)[0]:
             return np.inf
         return REACH * min(size_of_edges(self.boundary_of(body).edges) for body in self.sides_of(contact))
 
