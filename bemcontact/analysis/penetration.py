@@ -122,8 +122,8 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
             kind=Misfit.ITSELF, depth=float(np.hypot(*(first - second))), allowed=0.0, at=(x, y), edge=edges[0],
             zone="", paired=False,
             words=(
-                f"The bodies '{of[0]}' and '{of[1]}' penetrate each other at ({x:.5g}, {y:.5g}), where '{edges[0]}' and "
-                f"'{edges[1]}' cross after the motion. No contact between them is stated; add one, such as between: "
+                f"The bodies '{of[0]}' and '{of[1]}' penetrate each other at ({x:.5g}, {y:.5g}), where '{edges[0]}' "
+                f"and '{edges[1]}' cross after the motion. No contact between them is stated; add one, such as between: "
                 f"[{of[0]}, {of[1]}]."
             ),
         )  # fmt: skip

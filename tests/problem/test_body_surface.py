@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from several_bodies import block, elastic, polygon, problem, rigid
+
 from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.boundary import Boundary
 
