@@ -247,3 +247,14 @@ def test_faces_of_a_slot_press_on_each_other_as_on_the_plane_between_them():
     forces = [float(np.sum(item.contact.weights * item.solution.pressure)) for item in (closed, alone)]
     assert closed.penetration is None
     assert forces[0] == pytest.approx(forces[1], rel=5e-3)
+
+
+def test_a_path_of_the_gap_between_two_bodies_ends_as_a_solve_does():
+    """Pressure is linear in an interference of blocks that stay in contact, and no state on the way penetrates."""
+    low = elastic(block((-1, 3), (-1, 0), (8, 4, 8, 4)), HELD)
+    up = elastic(block((0, 2), (0, 1), (8, 4, 8, 4)), {"top": {"displacement": {"x": 0, "y": -0.01}}})
+    spec = problem({"up": up, "low": low}, face={"between": ["up/bottom", "low/top"], "gap": 0.0})
+    path = bemcontact.follow(spec, "contacts.face.gap", -0.001, start=0.0)
+    assert path.certified
+    end = bemcontact.solve(spec.with_value("contacts.face.gap", -0.001))
+    assert np.abs(path.path.at(1.0).pressure - end.solution.pressure).max() < 1e-10 * end.solution.pressure.max()
