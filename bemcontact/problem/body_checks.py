@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.bodies import SEPARATOR, BodySpec, qualified
 from bemcontact.problem.body_surface import BodySurface
+from bemcontact.problem.boundary import size_of
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.pairing import blunt_corner
 from bemcontact.problem.rigid_surface import DeflectedContour
@@ -16,6 +19,9 @@ from bemcontact.problem.wording import unknown_word
 
 if TYPE_CHECKING:
     from bemcontact.problem.problem import Problem
+
+INSIDE = 1e-6
+"""Depth over the size of a body from which a place is drawn inside it."""
 
 
 def body_issues(problem: Problem) -> Iterator[Issue]:
@@ -217,6 +223,26 @@ def opposite_issues(problem: Problem) -> Iterator[Issue]:
         names = ", ".join(f"'{name}'" for name in circle)
         message = f"the meshes of {names} would follow each other in a circle; exchange the sides of one contact"
         yield Issue(path=("contacts",), message=message)
+
+
+def inside_issues(problem: Problem) -> Iterator[Issue]:
+    """Issues of bodies that are drawn wholly inside others which they do not touch: their edges cross nowhere."""
+    stated = {frozenset(problem.sides_of(contact)) for contact in problem.contacts}
+    loops = {name: problem.boundary_of(name).loops for name in problem.bodies}
+    middles = {
+        name: np.array([edge.points(np.array([0.5]))[0] for loop in its for edge in loop])
+        for name, its in loops.items()
+    }
+    for name, outer in loops.items():
+        edges = tuple(edge for loop in outer for edge in loop)
+        surface = BodySurface(body=name, elastic=False, edges=edges, loops=outer)
+        low, high = middles[name].min(axis=0), middles[name].max(axis=0)
+        for other, points in middles.items():
+            if other == name or frozenset((name, other)) in stated or (points < low).any() or (points > high).any():
+                continue
+            if (surface.feet(points).gap < -INSIDE * size_of(edges)).all():
+                message = f"'{other}' is drawn inside '{name}', and no contact between them is stated; move one of them"
+                yield Issue(path=("bodies", other), message=message)
 
 
 def _circle(follows: dict[str, set[str]]) -> list[str]:

@@ -30,7 +30,7 @@ from bemcontact.problem.bodies import (
     placed,
     with_boundary,
 )
-from bemcontact.problem.body_checks import body_issues, contact_issues, opposite_issues
+from bemcontact.problem.body_checks import body_issues, contact_issues, inside_issues, opposite_issues
 from bemcontact.problem.body_surface import BodySurface, BodyZone
 from bemcontact.problem.boundary import Boundary, size_of
 from bemcontact.problem.conditions import Condition, Loads
@@ -250,7 +250,7 @@ class Problem(SpecModel):
         if not issues:
             issues += facing_issues(self.edges, stated, self._held_edges())
         if not issues:
-            issues += opposite_issues(self)
+            issues += [*opposite_issues(self), *inside_issues(self)]
         issues += self._mesh_choice_issues(raw, self.edges, self.mesh)
         for part in self.parts:
             issues += mesh_issues(part.boundary, self._boundary_path(part.name), self.mesh.refine)
