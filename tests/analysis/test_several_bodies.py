@@ -258,3 +258,16 @@ def test_a_path_of_the_gap_between_two_bodies_ends_as_a_solve_does():
     assert path.certified
     end = bemcontact.solve(spec.with_value("contacts.face.gap", -0.001))
     assert np.abs(path.path.at(1.0).pressure - end.solution.pressure).max() < 1e-10 * end.solution.pressure.max()
+
+
+def test_three_bodies_that_meet_in_one_point():
+    """Two blocks side by side on a base: forces are those of the loads, and corners are looked at in pairs."""
+    side = {"pressure": 0.3}
+    bodies = {
+        "a": elastic(block((0, 2), (0, 1)), {"top": {"pressure": 1.0}, "left": side}),
+        "b": elastic(block((2, 4), (0, 1)), {"top": {"pressure": 2.0}, "right": side}, 500.0),
+        "base": elastic(block((-1, 5), (-2, 0)), HELD),
+    }
+    result = solved(bodies, 0.05, between=["a", "b"], one=["a", "base"], two=["b", "base"])
+    forces = result.contact.resultants(result.solution.pressure)
+    assert np.allclose(np.hypot(*forces.T), [0.3, 2.0, 4.0], rtol=1e-9)
