@@ -271,3 +271,15 @@ def test_three_bodies_that_meet_in_one_point():
     result = solved(bodies, 0.05, between=["a", "b"], one=["a", "base"], two=["b", "base"])
     forces = result.contact.resultants(result.solution.pressure)
     assert np.allclose(np.hypot(*forces.T), [0.3, 2.0, 4.0], rtol=1e-9)
+
+
+def test_bodies_that_bulge_into_each_other_below_a_third_are_named():
+    """Only they have no contact with each other; the third one has with both."""
+    bodies = {
+        "a": elastic(block((0, 2), (0, 1)), HELD),
+        "b": elastic(block((2, 4), (0, 1)), HELD, 500.0),
+        "c": elastic(block((1, 3), (1, 2)), {"top": {"pressure": 1.0}}),
+    }
+    penetration = solved(bodies, 0.05, one=["c", "a"], two=["c", "b"]).penetration
+    assert penetration is not None
+    assert "between: [a, b]" in penetration.words or "between: [b, a]" in penetration.words
