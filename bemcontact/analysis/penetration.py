@@ -129,8 +129,8 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
             zone="", paired=False,
             words=(
                 f"The bodies '{of[0]}' and '{of[1]}' penetrate each other at ({x:.5g}, {y:.5g}), where '{edges[0]}' "
-                f"and '{edges[1]}' cross after the motion. No contact between them is stated; add one, such as between: "
-                f"[{of[0]}, {of[1]}]."
+                f"and '{edges[1]}' cross after the motion. No contact between them is stated; add one, such as "
+                f"between: [{of[0]}, {of[1]}]."
             ),
         )  # fmt: skip
     crossing = " and ".join(f"'{edge}'" for edge in edges) if len(set(edges)) > 1 else f"two parts of '{edges[0]}'"
