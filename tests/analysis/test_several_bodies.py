@@ -4,10 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, problem, rigid
+from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, problem, rigid, stated
 
 import bemcontact
-from bemcontact import Problem
 
 PRESSED = {"top": {"pressure": 5.0}}
 
@@ -91,12 +90,12 @@ ROOF = polygon(right=(2, 0), under=(-1, -0.3), left=(5, -0.3))
 def test_a_rigid_outline_is_the_surface_with_the_same_shape(outline, surface, motion):
     own = elastic(block((0, 4), (0, 3), (20, 8, 8, 8)), {"top": {"displacement": {"x": 0, "y": 0}}})
     tools = {"ram": {"zones": "z", **motion}}
-    many = Problem(
+    many = stated(
         name="outline", bodies={"own": own, "tool": rigid(outline)}, tools=tools, accuracy=None,
         contacts={"z": {"between": ["own/bottom", "tool"]}},
     )  # fmt: skip
     zones = {"z": {"edges": ["bottom"], "surface": surface}}
-    one = Problem(name="surface", **own, tools=tools, accuracy=None, contact_zones=zones)
+    one = stated(name="surface", **own, tools=tools, accuracy=None, contact_zones=zones)
     pressures = [bemcontact.solve(item).solution.pressure for item in (many, one)]
     assert np.abs(pressures[0] - pressures[1]).max() < 1e-10 * pressures[1].max()
 
@@ -138,7 +137,7 @@ def test_a_million_times_stiffer_body_is_rigid():
     stiff = roller(modulus=1e9)
     disk = stiff.bodies["disk"]
     plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
-    alone = Problem(
+    alone = stated(
         name="alone", material=disk.material, boundary=disk.boundary, conditions=disk.conditions, accuracy=None,
         contact_zones={"c": {"edges": ["under"], "surface": plane}},
     )  # fmt: skip
@@ -239,7 +238,7 @@ def test_faces_of_a_slot_press_on_each_other_as_on_the_plane_between_them():
     closed = solved({"clip": body}, c=["clip/high face", "clip/low face"])
     plane = {"kind": "plane", "point": [0, 1], "normal": [0, 1]}
     alone = bemcontact.solve(
-        Problem(
+        stated(
             name="half", **elastic(half, {**held, "axis": {"displacement": {"y": 0}}, "top": {"pressure": 1.0}}),
             accuracy=None, contact_zones={"c": {"edges": ["high face"], "surface": plane}},
         )
