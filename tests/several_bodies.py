@@ -52,3 +52,8 @@ def problem(bodies: Mapping[str, Spec], accuracy: float | None = None, **contact
     """A problem with contacts between pairs of bodies or edges, or mappings."""
     stated = {name: pair if isinstance(pair, Mapping) else {"between": pair} for name, pair in contacts.items()}
     return Problem(name="several bodies", bodies=dict(bodies), contacts=stated, accuracy=accuracy)  # pyright: ignore[reportArgumentType]
+
+
+def stated(**spec: Any) -> Problem:
+    """A problem from the values of a spec."""
+    return Problem(**spec)

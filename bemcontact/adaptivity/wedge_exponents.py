@@ -225,8 +225,9 @@ def _conditions(wedge: Wedge, power: float | Array) -> Array:
     if other is None:
         return np.stack([row for face in own_faces for row in face.held], axis=-2)
     other_faces, rows = _face_rows(*other[:4], power), list[tuple[Array | None, Array | None]]()
-    for face, its in zip(faces, own_faces, strict=True):
-        rows += [(its.traction[1], None)] if face.contact else [(row, None) for row in its.held]
+    for face, its, across in zip(faces, own_faces, other.faces[::-1], strict=True):
+        joined = face.contact and across.contact  # a face that a third body touches is held as by a rigid one
+        rows += [(its.traction[1], None)] if joined else [(row, None) for row in its.held]
     for face, its, touched, theirs in zip(other.faces, other_faces, faces[::-1], own_faces[::-1], strict=True):
         if not (face.contact and touched.contact):
             rows += [(None, row) for row in its.held]
@@ -247,7 +248,7 @@ def _given(wedge: Wedge, loads: tuple[complex, ...]) -> Array:
     for number, (face, load) in enumerate(zip(faces, loads, strict=True)):
         directions = zip((face.direction, 1j * face.direction), face.held, strict=True)
         values = [0.0 if held else OUTWARD[number % 2] * (load * np.conj(at)).real for at, held in directions]
-        if other is None or not face.contact:
+        if other is None or not (face.contact and (*other.faces[::-1], *own[::-1])[number].contact):
             given += values
         else:
             given += values[1:] if number < 2 else [values[1], 0.0, 0.0]

@@ -42,7 +42,7 @@ class FollowedPath(NamedTuple):
         """
         varied, value, contact = self.varied, self.value(t), self.path.contact(t)
         p, a = solution.pressure, solution.rigid_amplitudes
-        moves = varied.path[0] in ("load_cases", "contact_zones")  # a tool moves in the contact problem
+        moves = varied.path[0] in ("load_cases", "contact_zones", "contacts")  # as a tool in the contact problem
         one = varied.condensed[min(varied.condensed)]
         body = replace(one.body, problem=varied.at(value)) if moves else one.body
         here = replace(one, body=body, contact=contact)

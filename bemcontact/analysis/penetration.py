@@ -110,8 +110,14 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
     elements, near = np.concatenate(loops), np.concatenate(places) - meeting
     distance = np.hypot(*np.moveaxis(near, 2, 0))
     order = elements[np.argsort(distance.min(axis=1))]
-    one = int(order[0])
-    other = int(next(i for i in order if i not in (one, mesh.before[one], mesh.elements[one, 2])))
+    of_edge = [gaps.problem.part_of(name) for name in state.edge_names]
+    nearest = [(int(i), of_edge[mesh.edge[i]]) for i in order]
+    one, other = next(
+        (i, j)
+        for number, (j, body) in enumerate(nearest)
+        for i, its in nearest[:number]
+        if j not in (mesh.before[i], mesh.elements[i, 2]) and frozenset((its, body)) not in stated
+    )
     first, second = (
         gaps.outline.sampled(np.array([i])).points[0][distance[elements == i].argmin()] for i in (one, other)
     )

@@ -7,6 +7,7 @@ import numpy as np
 from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.bodies import SEPARATOR, BodySpec, qualified
 from bemcontact.problem.body_surface import BodySurface
+from bemcontact.problem.boundary import size_of_edges
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.contact_zone import RigidTool
 from bemcontact.problem.pairing import blunt_corner
@@ -19,6 +20,9 @@ COINCIDE = 1e-6
 """Distance of bonded edges over the size of the bodies that is round-off of coordinates."""
 SAMPLES = 33
 """Places of an edge where the distance is measured."""
+
+INSIDE = 1e-6
+"""Depth over the size of a body from which a place is drawn inside it."""
 
 
 def body_issues(problem: StatedBodies) -> Iterator[Issue]:
@@ -270,6 +274,26 @@ def _distance(problem: StatedBodies, bond: str) -> float | None:
         places = problem.edge(part.edge).points(np.linspace(part.low, part.high, SAMPLES))
         away.append(float(np.abs(surface.feet(places).gap).max()))
     return max(away, default=None)
+
+
+def inside_issues(problem: StatedBodies) -> Iterator[Issue]:
+    """Issues of bodies that are drawn wholly inside others which they do not touch: their edges cross nowhere."""
+    stated = {frozenset(problem.sides_of(contact)) for contact in (*problem.contacts, *problem.bonded)}
+    loops = {name: problem.boundary_of(name).loops for name in problem.bodies}
+    middles = {
+        name: np.array([edge.points(np.array([0.5]))[0] for loop in its for edge in loop])
+        for name, its in loops.items()
+    }
+    for name, outer in loops.items():
+        edges = tuple(edge for loop in outer for edge in loop)
+        surface = BodySurface(body=name, elastic=False, edges=edges, loops=outer)
+        low, high = middles[name].min(axis=0), middles[name].max(axis=0)
+        for other, points in middles.items():
+            if other == name or frozenset((name, other)) in stated or (points < low).any() or (points > high).any():
+                continue
+            if (surface.feet(points).gap < -INSIDE * size_of_edges(edges)).all():
+                message = f"'{other}' is drawn inside '{name}', and no contact between them is stated; move one of them"
+                yield Issue(path=("bodies", other), message=message)
 
 
 def _circle(follows: dict[str, set[str]]) -> list[str]:

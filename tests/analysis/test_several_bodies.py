@@ -4,10 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, problem, rigid
+from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, problem, rigid, stated
 
 import bemcontact
-from bemcontact import Problem
 
 PRESSED = {"top": {"pressure": 5.0}}
 
@@ -91,12 +90,12 @@ ROOF = polygon(right=(2, 0), under=(-1, -0.3), left=(5, -0.3))
 def test_a_rigid_outline_is_the_surface_with_the_same_shape(outline, surface, motion):
     own = elastic(block((0, 4), (0, 3), (20, 8, 8, 8)), {"top": {"displacement": {"x": 0, "y": 0}}})
     tools = {"ram": {"zones": "z", **motion}}
-    many = Problem(
+    many = stated(
         name="outline", bodies={"own": own, "tool": rigid(outline)}, tools=tools, accuracy=None,
         contacts={"z": {"between": ["own/bottom", "tool"]}},
     )  # fmt: skip
     zones = {"z": {"edges": ["bottom"], "surface": surface}}
-    one = Problem(name="surface", **own, tools=tools, accuracy=None, contact_zones=zones)
+    one = stated(name="surface", **own, tools=tools, accuracy=None, contact_zones=zones)
     pressures = [bemcontact.solve(item).solution.pressure for item in (many, one)]
     assert np.abs(pressures[0] - pressures[1]).max() < 1e-10 * pressures[1].max()
 
@@ -138,7 +137,7 @@ def test_a_million_times_stiffer_body_is_rigid():
     stiff = roller(modulus=1e9)
     disk = stiff.bodies["disk"]
     plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
-    alone = Problem(
+    alone = stated(
         name="alone", material=disk.material, boundary=disk.boundary, conditions=disk.conditions, accuracy=None,
         contact_zones={"c": {"edges": ["under"], "surface": plane}},
     )  # fmt: skip
@@ -239,7 +238,7 @@ def test_faces_of_a_slot_press_on_each_other_as_on_the_plane_between_them():
     closed = solved({"clip": body}, c=["clip/high face", "clip/low face"])
     plane = {"kind": "plane", "point": [0, 1], "normal": [0, 1]}
     alone = bemcontact.solve(
-        Problem(
+        stated(
             name="half", **elastic(half, {**held, "axis": {"displacement": {"y": 0}}, "top": {"pressure": 1.0}}),
             accuracy=None, contact_zones={"c": {"edges": ["high face"], "surface": plane}},
         )
@@ -247,3 +246,39 @@ def test_faces_of_a_slot_press_on_each_other_as_on_the_plane_between_them():
     forces = [float(np.sum(item.contact.weights * item.solution.pressure)) for item in (closed, alone)]
     assert closed.penetration is None
     assert forces[0] == pytest.approx(forces[1], rel=5e-3)
+
+
+def test_a_path_of_the_gap_between_two_bodies_ends_as_a_solve_does():
+    """Pressure is linear in an interference of blocks that stay in contact, and no state on the way penetrates."""
+    low = elastic(block((-1, 3), (-1, 0), (8, 4, 8, 4)), HELD)
+    up = elastic(block((0, 2), (0, 1), (8, 4, 8, 4)), {"top": {"displacement": {"x": 0, "y": -0.01}}})
+    spec = problem({"up": up, "low": low}, face={"between": ["up/bottom", "low/top"], "gap": 0.0})
+    path = bemcontact.follow(spec, "contacts.face.gap", -0.001, start=0.0)
+    assert path.certified
+    end = bemcontact.solve(spec.with_value("contacts.face.gap", -0.001))
+    assert np.abs(path.path.at(1.0).pressure - end.solution.pressure).max() < 1e-10 * end.solution.pressure.max()
+
+
+def test_three_bodies_that_meet_in_one_point():
+    """Two blocks side by side on a base: forces are those of the loads, and corners are looked at in pairs."""
+    side = {"pressure": 0.3}
+    bodies = {
+        "a": elastic(block((0, 2), (0, 1)), {"top": {"pressure": 1.0}, "left": side}),
+        "b": elastic(block((2, 4), (0, 1)), {"top": {"pressure": 2.0}, "right": side}, 500.0),
+        "base": elastic(block((-1, 5), (-2, 0)), HELD),
+    }
+    result = solved(bodies, 0.05, between=["a", "b"], one=["a", "base"], two=["b", "base"])
+    forces = result.contact.resultants(result.solution.pressure)
+    assert np.allclose(np.hypot(*forces.T), [0.3, 2.0, 4.0], rtol=1e-9)
+
+
+def test_bodies_that_bulge_into_each_other_below_a_third_are_named():
+    """Only they have no contact with each other; the third one has with both."""
+    bodies = {
+        "a": elastic(block((0, 2), (0, 1)), HELD),
+        "b": elastic(block((2, 4), (0, 1)), HELD, 500.0),
+        "c": elastic(block((1, 3), (1, 2)), {"top": {"pressure": 1.0}}),
+    }
+    penetration = solved(bodies, 0.05, one=["c", "a"], two=["c", "b"]).penetration
+    assert penetration is not None
+    assert "between: [a, b]" in penetration.words or "between: [b, a]" in penetration.words

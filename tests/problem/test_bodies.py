@@ -93,6 +93,17 @@ def test_a_rigid_body_that_nothing_touches_is_refused():
         bemcontact.loads(SPEC.replace("contacts:\n", lone + "contacts:\n"))
 
 
+def test_a_body_inside_another_one_is_refused_unless_it_is_in_a_hole():
+    """Their boundaries cross nowhere, so that no later look at the deformed ones would find it."""
+    pill = "{name: rim, kind: arc, center: [1, -0.5], radius: 0.2, angles: [0, 360]}"
+    text = SPEC.replace("contacts:\n", f"  pill: {{material: steel, boundary: {{outer: [{pill}]}}}}\ncontacts:\n")
+    with pytest.raises(bemcontact.SpecError, match="'pill' is drawn inside 'low'"):
+        bemcontact.loads(text)
+    hole = "      holes: [[{name: bore, kind: arc, center: [1, -0.5], radius: 0.3, angles: [360, 0]}]]\n"
+    held = "    conditions: {bottom"
+    assert bemcontact.loads(text.replace(held, hole + held)).several
+
+
 @pytest.mark.parametrize("turn", [30.0, 37.0, 90.0, 217.3])
 def test_a_copy_is_turned_about_its_point_and_then_shifted(turn):
     low = {"copy_of": "up", "rotate": turn, "about": [1, 2], "shift": [3, -4], "conditions": HELD}

@@ -15,7 +15,9 @@ ROOF = (np.array([0.6, 0.8]), np.array([-0.6, 0.8]))
 
 def surface(body):
     spec = problem({"body": elastic(block((0, 1), (2, 3), (2,) * 4)), "other": body}, touch=["body", "other"])
-    return spec.zones["touch"].surface
+    found = spec.zones["touch"].surface
+    assert isinstance(found, BodySurface)
+    return found
 
 
 def square():
@@ -23,7 +25,7 @@ def square():
 
 
 def test_the_gap_is_the_distance_and_negative_inside():
-    feet = square().feet([[0.5, 3.0], [0.5, 1.5], [3.0, 3.0]])
+    feet = square().feet(np.array([[0.5, 3.0], [0.5, 1.5], [3.0, 3.0]]))
     assert np.allclose(feet.gap, [1.0, -0.5, np.sqrt(2)])
     assert np.allclose(feet.normals, [[0, 1], [0, 1], [np.sqrt(0.5), np.sqrt(0.5)]])
     assert feet.corner.tolist() == [False, False, True]
@@ -31,7 +33,7 @@ def test_the_gap_is_the_distance_and_negative_inside():
 
 def test_places_on_the_normals_at_a_corner_are_told_from_those_inside_an_edge():
     """They have the distance along the normal of the edge, as the last pair of two blocks of equal width needs."""
-    feet = square().feet([[2.0, 2.5], [2.4, 2.0], [1.9, 2.5]])
+    feet = square().feet(np.array([[2.0, 2.5], [2.4, 2.0], [1.9, 2.5]]))
     assert np.allclose(feet.normals, [[0, 1], [1, 0], [0, 1]])
     assert np.allclose(feet.gap, [0.5, 0.4, 0.5])
     assert feet.at_corner.tolist() == [True, True, False]
@@ -47,7 +49,7 @@ def test_the_place_beyond_a_corner_is_found_in_turned_bodies(angle, away):
 
     boundary = Boundary(**polygon(bottom=at(-1, 0), right=at(2, 0), top=at(2, 2), left=at(-1, 2)))
     turned = BodySurface(body="b", elastic=True, edges=boundary.edges, loops=boundary.loops)
-    assert turned.feet([at(2.1, 2), at(-1.3, 2), at(2, 2.5)]).at_corner.all()
+    assert turned.feet(np.array([at(2.1, 2), at(-1.3, 2), at(2, 2.5)])).at_corner.all()
 
 
 def test_a_convex_corner_presses_on_a_smooth_boundary_along_its_normal():

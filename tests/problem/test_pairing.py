@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from several_bodies import block, circle, elastic, polygon, problem, rigid
 
+from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.pairing import blunt_corner
 
 
@@ -51,6 +52,8 @@ def test_the_corner_of_an_elastic_body_across_a_gap_is_found():
         accuracy=0.01,
         touch=["up/bottom", "low"],
     )
-    corner = blunt_corner([spec.edge("up/bottom")], spec.zones["touch"].surface)
+    surface = spec.zones["touch"].surface
+    assert isinstance(surface, BodySurface)
+    corner = blunt_corner([spec.edge("up/bottom")], surface)
     assert corner is not None
     assert np.allclose(corner, (1, 0))
