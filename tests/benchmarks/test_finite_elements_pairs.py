@@ -5,9 +5,10 @@ from pathlib import Path
 import finite_elements_pairs
 import numpy as np
 import pytest
+import two_bodies
 from finite_elements_bodies import along_x, upwards
 from finite_elements_contact import ElasticBody, graded, mapped, press
-from finite_elements_pairs import Side, gaps, horizontal, layer_on_block, pin_in_plate, press_together, roller_on_block
+from finite_elements_pairs import Side, gaps, horizontal, press_together, roller_on_block
 
 STIFF, SOFT, NU = 210.0, 70.0, 0.3
 LEVEL = {axis: (lambda x, y, axis=axis: np.where((x, y)[axis] < 1e-12, 0.0, 1.0)) for axis in (0, 1)}
@@ -115,12 +116,6 @@ def test_hertz():
     assert touch.pressure_at(np.zeros(1)) == pytest.approx(2 * load / np.pi / half_width, rel=2e-3)
 
 
-def test_forces_balance_the_loads():
-    """Each body is held along the y axis by the other one alone: the force of contact is the load along it."""
-    assert pin_in_plate(1, clearance=0.02, load=135, end=31.8).force[1] == pytest.approx(135, rel=1e-8)
-    assert layer_on_block(1, pressure=3, end=1.24).force == pytest.approx([0, 1.5], rel=1e-8)
-
-
 def test_nodes_that_do_not_match_are_refused():
     nodes, normals = np.array([[0.0, 1.0], [1.0, 1.0]]), np.array([[0.0, 1.0], [0.0, 1.0]])
     with pytest.raises(ValueError, match="2 nodes are opposite to 1"):
@@ -133,3 +128,24 @@ def test_a_pair_that_is_held_is_refused():
     upper, lower = block(0, 1, STIFF, (horizontal(0.0), 1)), block(-2, 0, SOFT, (horizontal(-2.0), 1))
     with pytest.raises(ValueError, match="held along its normal"):
         press_together(unloaded(upper, horizontal(0.0)), unloaded(lower, horizontal(0.0)), upwards)
+
+
+def test_limits_of_peak_and_end():
+    """1 + h² and 1 + h on h = 1, 1/2 and 1/4: both tend to 1, from which the last values are 1/16 and 1/4 away."""
+    values = [np.array([1 + h**2, 1 + h]) for h in (1.0, 0.5, 0.25)]
+    last, uncertain = two_bodies.limit(values)
+    assert last == pytest.approx([1, 1])
+    assert uncertain == pytest.approx([1 / 16, 1 / 4])
+
+
+@pytest.mark.parametrize(("name", "load"), [("layer", 0.5), ("pin, 135 N/mm", 135.0)])
+def test_both_statements_of_a_problem_are_the_same(name: str, load: float):
+    """On the coarsest mesh and with an accuracy of 1e-2; the meshes of the table agree to 1e-4.
+
+    Along the y axis contact alone holds the body on top: its force is the load.
+    """
+    problem = two_bodies.PROBLEMS[name]
+    touch = problem.touch(1)
+    assert touch.force[1] == pytest.approx(load, rel=1e-8)
+    value, _, _ = two_bodies.of_bemcontact(problem, 1e-2)
+    assert value == pytest.approx(two_bodies.peak_and_end(touch), rel=3e-3)
