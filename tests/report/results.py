@@ -6,8 +6,10 @@ from mesh_studies import punch, roller
 from tool_problems import FREE, FREE_CASES, made
 
 import bemcontact
+from bemcontact.analysis.case_comparisons import CaseComparisons, compare_cases
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
+from bemcontact.options import ComparisonOptions
 
 
 @cache
@@ -34,4 +36,12 @@ def cases() -> CaseResults:
     return bemcontact.solve_cases(made(FREE, **FREE_CASES))
 
 
+@cache
+def compared_cases() -> CaseComparisons:
+    """The block between tools, by QP3 and directly."""
+    return compare_cases(ComparisonOptions.of(["qp3"]), made(FREE, **FREE_CASES))
+
+
 EACH = {"roller": rolled, "punch": punched, "condensed": condensed, "cases": cases}
+SPEC = "name: <x>  # " + "long " * 60
+"""The text of a problem, to be shown on a page."""
