@@ -34,7 +34,7 @@ def followed_once(problem: Problem, key: str, to: float, start: float | None = N
 
 
 @pytest.fixture(autouse=True)
-def settled(monkeypatch: pytest.MonkeyPatch):
+def settled(monkeypatch: pytest.MonkeyPatch, meshes_found_once: None):
     for variable, value in pages.SETTINGS.items():
         monkeypatch.setenv(variable, value)
     for name in ("bemcontact.follow", "bemcontact.analysis.follow.follow"):
