@@ -6,6 +6,7 @@ Tests run side by side, one on each core; what NumPy calls must not take the cor
 import gc
 import os
 import sys
+from typing import Any
 
 for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(threads, "1")  # before the first import of NumPy
@@ -42,6 +43,29 @@ def numpy_by_default():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("bemcontact.bem.system.numba_is_imported", lambda: False)
         yield
+
+
+MOST_MESHES = 8
+"""Meshes that are kept, with their factorizations."""
+FOUND: dict[tuple[str, int], Any] = {}
+
+
+@pytest.fixture
+def meshes_found_once(monkeypatch: pytest.MonkeyPatch):
+    """A mesh that tests find for the same problem is found by the first of them: for tests of what is done with it."""
+    from bemcontact.adaptivity import adapt
+
+    original = adapt._found
+
+    def found(problem: Any, progress: Any, passes: int = adapt.MOST_PASSES) -> Any:
+        asked = (repr((problem.model_dump_json(), problem.case)), passes)
+        if asked not in FOUND:
+            if len(FOUND) == MOST_MESHES:
+                del FOUND[next(iter(FOUND))]
+            FOUND[asked] = original(problem, progress, passes)
+        return FOUND[asked]
+
+    monkeypatch.setattr(adapt, "_found", found)
 
 
 def pytest_terminal_summary(terminalreporter):

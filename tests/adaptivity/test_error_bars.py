@@ -28,6 +28,8 @@ from bemcontact.adaptivity.hidden_changes import REMAINS, hidden_change, told_ap
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.problem import Problem
 
+pytestmark = pytest.mark.usefixtures("meshes_found_once")
+
 
 def difference(problem: Problem) -> MeshDifference:
     """A mesh fitted to contact, and its halves."""

@@ -19,6 +19,8 @@ PEAK, HALF_WIDTH = 183.335, 2.7685
 """The cylinder by finite elements on four meshes, per undeformed length; see the description in the model."""
 FORMULATIONS = ("qp1", "qp2", "qp3", "complementarity")
 
+pytestmark = pytest.mark.usefixtures("meshes_found_once")
+
 
 @pytest.fixture(scope="module")
 def cylinder() -> Problem:

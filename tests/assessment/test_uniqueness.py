@@ -1,7 +1,7 @@
 """Uniqueness without definiteness, against all contact states by exhaustive search."""
 
 from dataclasses import replace
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 import pytest
@@ -35,17 +35,22 @@ def all_states(contact: CondensedContact) -> list[np.ndarray]:
     M, R, ell, q = contact.compliance, contact.rigid_motions, contact.equilibrium, contact.offset
     n, k = R.shape
     found: list[np.ndarray] = []
-    for choice in product([False, True], repeat=n):
-        A = np.array(choice)
-        matrix = np.block([[M[np.ix_(A, A)], R[A]], [ell[A].T, np.zeros((k, k))]])
-        if A.sum() < k or abs(np.linalg.det(matrix)) < 1e-12:
-            continue
-        x = np.linalg.solve(matrix, -np.append(q[A], contact.motion_load))
-        p = np.zeros(n)
-        p[A] = x[: A.sum()]
-        gap = q + M @ p + R @ x[A.sum() :]
-        if p.min() >= -1e-9 and gap.min() >= -1e-9 and all(abs(p - other).max() > 1e-7 for other in found):
-            found.append(p)
+    for m in range(k, n + 1):
+        sets = [*combinations(range(n), m)]
+        A = np.array(sets, int).reshape(len(sets), m)
+        matrix = np.zeros((len(A), m + k, m + k))
+        matrix[:, :m, :m] = M[A[:, :, None], A[:, None, :]]
+        matrix[:, :m, m:] = R[A]
+        matrix[:, m:, :m] = np.swapaxes(ell[A], 1, 2)
+        regular = abs(np.linalg.det(matrix)) >= 1e-12
+        A, load = A[regular], np.broadcast_to(contact.motion_load, (regular.sum(), k))
+        x = np.linalg.solve(matrix[regular], -np.hstack([q[A], load])[:, :, None])[:, :, 0]
+        p = np.zeros((len(A), n))
+        np.put_along_axis(p, A, x[:, :m], axis=1)
+        gap = q + p @ M.T + x[:, m:] @ R.T
+        for state in p[(p.min(axis=1) >= -1e-9) & (gap.min(axis=1) >= -1e-9)]:
+            if all(abs(state - other).max() > 1e-7 for other in found):
+                found.append(state)
     return found
 
 
@@ -169,7 +174,7 @@ def test_each_proof_alone_proves_lonely_states_only(monkeypatch, proof, problem,
     assert several >= least[1]
 
 
-@pytest.mark.parametrize(("length", "elements"), [(500, 40), (800, 60), (1000, 60), (1500, 160)])
+@pytest.mark.parametrize(("length", "elements"), [(500, 40), (800, 60), (1000, 60), (1500, 120)])
 def test_long_contact_of_a_slender_beam_is_certified(length: int, elements: int):
     """Under its weight on a floor, with one end pulled up: contact is half as long as the beam and longer."""
     edges = [("bottom", (0, 0), elements), ("right", (length, 0), 2), ("top", (length, 10), elements),
@@ -287,7 +292,7 @@ def test_two_surfaces_at_each_node_of_a_held_body():
     """
     rng = np.random.default_rng(8)
     certified = singular = 0
-    for _ in range(150):
+    for _ in range(75):
         contact = held_with_two_normals_at_each_node(rng)
         solution = complementarity.solve(contact)
         certificate = certificate_of(contact, solution)
@@ -298,8 +303,8 @@ def test_two_surfaces_at_each_node_of_a_held_body():
         singular += np.linalg.eigvalsh(contact.compliance)[0] < 1e-12
         assert certificate.error_bound is not None
         assert all(abs(solution.pressure - state).max() <= certificate.error_bound + 1e-9 for state in states)
-    assert certified > 60
-    assert singular > 40
+    assert certified > 30
+    assert singular > 20
 
 
 def test_three_rods_under_one_edge_are_certified():

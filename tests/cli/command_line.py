@@ -64,6 +64,38 @@ def in_a_process(
     )
 
 
+EACH_COMMAND = """
+import sys
+from bemcontact import cli
+for command in sys.argv[1:]:
+    sys.argv = ["bemcontact", *command.split()]
+    try:
+        cli.main()
+    except SystemExit as end:
+        print(f"status {end.code}")
+"""
+
+
+def in_one_process(
+    *commands: str, code: str = "", before: str = "", flags: tuple[str, ...] = (), **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """Run commands one after the other, each followed by its status, and then `code`.
+
+    The start of a process takes longer than most commands. `before` is a command of the shell, and `flags` are those of
+    Python.
+    """
+    root = str(Path(bemcontact.__file__).parents[1])
+    program = ["/bin/bash", "-c", f'{before} exec "$0" "$@"', sys.executable, *flags, "-c", EACH_COMMAND + code]
+    return subprocess.run(
+        [*program, *commands],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        env={**os.environ, "PYTHONPATH": root, "OPENBLAS_NUM_THREADS": "1", **environment},
+    )
+
+
 def assert_refused(answer: Result, pattern: str) -> None:
     assert answer.exit_code == 2
     assert answer.stdout == ""

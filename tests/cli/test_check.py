@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from command_line import BLOCK, PRESS, assert_refused, in_a_process, run
+from command_line import BLOCK, PRESS, assert_refused, in_one_process, run
 
 import bemcontact
 from bemcontact.analysis import solve as analysis
@@ -46,36 +46,30 @@ def test_check_prints_the_facts(block: Path):
     assert max(map(len, answer.stdout.splitlines())) <= 100
 
 
-@pytest.mark.parametrize("elements", ["4", "null"])
-def test_check_starts_without_solvers(block: Path, elements: str):
+def test_check_starts_without_solvers(block: Path):
     """It meshes the body and balances its loads, with NumPy alone for a body that is free in one way."""
     scipy = tuple(f"scipy.{name}" for name in ("linalg", "optimize", "sparse", "special", "interpolate"))
     rooms = ("formulations", "assessment", "parametric", "modelling", "reference", "studies", "serialization")
     others = ("bem.system", "bem.condense", "analysis.solve", "contact.condensed_contact")
     slow = (*scipy, "cvxpy", "matplotlib", "threadpoolctl", *(f"bemcontact.{name}" for name in (*rooms, *others)))
     code = f"print([m for m in {slow} if m in sys.modules], file=sys.stderr)"
-    changes = f"boundary.outer[0].elements={elements}", "accuracy=0.01"
-    answer = in_a_process("check", block, *(part for change in changes for part in ("--set", change)), code=code)
-    assert (answer.returncode, answer.stderr) == (0, "[]\n")
+    commands = [f"check {block} --set boundary.outer[0].elements={n} --set accuracy=0.01" for n in ("4", "null")]
+    answer = in_one_process(*commands, code=code)
+    assert answer.stdout.count("status 0\n") == len(commands)
+    assert answer.stderr == "[]\n"
 
 
-@pytest.mark.parametrize(
-    ("command", "model"),
-    [
-        ("check", "gallery/roller_in_v_block"),
-        ("check", "gallery/shrink_fit"),
-        ("check", "elliptical_crack_closure"),
-        ("solve", "gallery/block_in_corner"),
-        ("solve", "gallery/shrink_fit"),
-    ],
-)
-def test_bodies_that_are_free_in_several_ways_start_without_programs(command: str, model: str):
+def test_bodies_that_are_free_in_several_ways_start_without_programs():
     """Small programs, and arcs of ellipses, need no part of SciPy of their own."""
     slow = tuple(f"scipy.{name}" for name in ("optimize", "sparse", "special", "interpolate"))
     code = f"print([m for m in {slow} if m in sys.modules], file=sys.stderr)"
-    path = Path(bemcontact.__file__).parents[1] / "models" / f"{model}.yaml"
-    answer = in_a_process(command, path, code=code)
-    assert (answer.returncode, answer.stderr) == (0, "[]\n")
+    models = Path(bemcontact.__file__).parents[1] / "models"
+    checked = ("gallery/roller_in_v_block", "gallery/shrink_fit", "elliptical_crack_closure")
+    solved = ("gallery/block_in_corner", "gallery/shrink_fit")
+    commands = [f"check {models / name}.yaml" for name in checked] + [f"solve {models / name}.yaml" for name in solved]
+    answer = in_one_process(*commands, code=code)
+    assert answer.stdout.count("status 0\n") == len(commands)
+    assert answer.stderr == "[]\n"
 
 
 def test_condense_writes_what_solve_reads(block: Path, tmp_path: Path):

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from command_line import in_one_process
 from rich.text import Text
 from typer.testing import CliRunner
 
@@ -54,10 +55,10 @@ def test_names_that_no_spec_could_have_are_escaped_in_every_output(capsys):
 
 
 def test_a_wrong_command_line_is_repeated_without_hidden_characters():
-    for arguments in (["\x1b[31m"], ["check", "--\x1b[31m"], ["check", "a\x1b[31m.yaml"]):
-        ended = in_a_process(*arguments)
-        assert ended.returncode == 2
-        assert hidden_character(ended.stdout + ended.stderr, LINE_BREAKS) is None
+    ended = in_one_process("\x1b[31m", "check --\x1b[31m", "check a\x1b[31m.yaml")
+    assert ended.stdout == 3 * "status 2\n"
+    assert len(ended.stderr.splitlines()) == 3
+    assert hidden_character(ended.stderr, LINE_BREAKS) is None
 
 
 def test_a_spec_is_read_from_standard_input():
@@ -70,19 +71,21 @@ def test_a_spec_is_read_from_standard_input():
     assert broken.stderr.startswith("error: standard input:1:5: ")
 
 
-@pytest.mark.parametrize("name", ["a.pdf", "a.png", "a.svg"])
-def test_a_file_that_cannot_grow_is_named(tmp_path: Path, name):
+def test_a_file_that_cannot_grow_is_named(tmp_path: Path):
+    paths = [tmp_path / name for name in ("a.pdf", "a.png", "a.svg")]
     no_modules = {"PYTHONDONTWRITEBYTECODE": "1"}  # Python would write compiled modules that are cut off, and stay
-    ended = in_a_process("check", MODEL, "--figure", tmp_path / name, before="ulimit -f 2;", **no_modules)
-    assert ended.stderr == f"error: {tmp_path / name}: File too large\n"
+    commands = [f"check {MODEL} --figure {path}" for path in paths]
+    ended = in_one_process(*commands, before="ulimit -f 2;", **no_modules)
+    assert ended.stderr == "".join(f"error: {path}: File too large\n" for path in paths)
     assert [*tmp_path.iterdir()] == []
 
 
-@pytest.mark.parametrize("arguments", ["--help", "solve --help", "schema", "schema --result", "schema --reproduction"])
-def test_help_and_schemas_are_the_same_where_python_removes_docstrings(arguments: str):
-    with_them, without = (in_a_process(*arguments.split(), flags=flags) for flags in ((), ("-OO",)))
+def test_help_and_schemas_are_the_same_where_python_removes_docstrings():
+    commands = ["--help", "solve --help", "schema", "schema --result", "schema --reproduction"]
+    with_them, without = (in_one_process(*commands, flags=flags) for flags in ((), ("-OO",)))
     assert without.stdout == with_them.stdout
-    assert without.returncode == 0
+    assert without.stdout.count("\nstatus 0\n") == len(commands)
+    assert without.stderr == ""
 
 
 def test_little_memory_is_said_before_any_work():

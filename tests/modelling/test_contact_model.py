@@ -209,7 +209,7 @@ LIGHT = st.integers(0, 9).map(lambda power: 10.0**-power)
 """Loads down to a billionth of the one that closes gaps."""
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(seed=st.integers(0, 10**6), n=st.integers(2, 12), load=LIGHT, share=st.sampled_from([0.3, 0.99, 1.01, 1.5]))
 def test_a_limit_is_infeasible_exactly_if_the_load_cannot_be_carried_under_it(seed, n, load, share):
     """A lift opens all gaps, so that only Σp = load and p <= limit remain: feasible if n limits exceed the load."""
@@ -220,7 +220,7 @@ def test_a_limit_is_infeasible_exactly_if_the_load_cannot_be_carried_under_it(se
     assert ("cannot be satisfied" in result.words) == (share < 1)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(seed=st.integers(0, 10**6), n=st.integers(4, 14), motions=st.sampled_from([0, 1, 3]), load=LIGHT)
 @example(seed=3075, n=8, motions=3, load=1.6e-7)
 def test_additions_that_contradict_each_other_are_infeasible(seed, n, motions, load):
@@ -236,7 +236,7 @@ def test_additions_that_contradict_each_other_are_infeasible(seed, n, motions, l
         assert model.solve(extra_constraints=added).status is Status.INFEASIBLE
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(seed=st.integers(0, 10**6), motions=st.sampled_from([0, 1, 3]), load=LIGHT, cost=st.floats(-3, 3))
 @example(seed=29, motions=3, load=10.0**-4.6, cost=0.1)
 @example(seed=89, motions=3, load=10.0**-6.9, cost=1.4)

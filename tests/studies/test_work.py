@@ -38,7 +38,7 @@ def assert_same(row: MemberRow, expected: MemberRow) -> None:
 def test_rows_of_members_that_share_are_those_of_solve(accuracy: float | None):
     """One factorization for all loads and gaps on each mesh, and for each modulus."""
     problem = CYLINDER.with_value("accuracy", accuracy)
-    plan = study_plan(problem, {LOAD: [10, 20, 50.0], PLACE: [0.0, -0.5], "material.young_modulus": [900, 1100]})
+    plan = study_plan(problem, {LOAD: [10, 50.0], PLACE: [0.0, -0.5], "material.young_modulus": [900, 1100]})
     for row in rows(plan):
         alone = bemcontact.solve(problem.with_values(row.values))
         assert_same(row, row_of(row.number, row.values, alone))

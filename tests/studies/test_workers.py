@@ -19,9 +19,7 @@ from bemcontact.studies.workers import rows_by_processes, rows_here
 CYLINDER = bemcontact.load(Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml", variant="paper").with_value(
     "accuracy", 0.01
 )
-PLAN = study_plan(
-    CYLINDER, {"conditions.top.pressure": [10, 20, 30], "material.young_modulus": [900, 1000, 1100, 1200]}
-)
+PLAN = study_plan(CYLINDER, {"conditions.top.pressure": [10, 20, 30], "material.young_modulus": [900, 1000, 1100]})
 
 
 def sorted_by_number(rows: workers.Rows) -> list[MemberRow]:

@@ -189,7 +189,7 @@ def exhaustive(contact: CondensedContact, low: float, high: float) -> float:
     return best
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 def test_the_design_is_the_best_of_all_contact_sets(seed):
     contact = random_contact(seed, 6, seed % 3)
     design = design_gap(contact, Relief(lower=-0.3, upper=0.5))

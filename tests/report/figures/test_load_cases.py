@@ -54,8 +54,10 @@ def fans(axes: Axes) -> list[np.ndarray]:
 
 @cache
 def page_of(draw: Callable[[CaseResults], Figure], name: str) -> Figure:
-    """A page that several tests look at."""
-    return draw(solved(name))
+    """A page that several tests look at, laid out."""
+    page = draw(solved(name))
+    page.draw_without_rendering()
+    return page
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -63,7 +65,6 @@ def page_of(draw: Callable[[CaseResults], Figure], name: str) -> Figure:
 def test_all_panels_have_equal_limits_and_sizes(name: str, draw):
     """So the undeformed body is drawn at one scale and one place; no fan is cut off."""
     figure = page_of(draw, name)
-    figure.draw_without_rendering()
     panels = figure.axes[: len(solved(name).results)]
     assert len({axes.axis() for axes in panels}) == 1
     sizes = np.array([axes.get_window_extent().size for axes in panels])
@@ -127,7 +128,9 @@ def test_a_case_without_displacements_sets_no_magnification():
 def test_each_panel_marks_the_largest_stress_or_those_that_are_infinite():
     """Rings where stress is finite but not the same all over; crosses below the edges of the sharp punch."""
     cases = solved("body_between_two_tools")
-    for axes, (name, result) in zip(figure_of_stresses(cases).axes, cases.results.items(), strict=False):
+    for axes, (name, result) in zip(
+        page_of(figure_of_stresses, "body_between_two_tools").axes, cases.results.items(), strict=False
+    ):
         rings = [line for line in axes.lines if line.get_marker() == "o"]
         same = name == "raised"  # a constant pressure
         assert bool(rings) != same
@@ -135,7 +138,7 @@ def test_each_panel_marks_the_largest_stress_or_those_that_are_infinite():
         assert not [line for line in axes.lines if line.get_marker() == "x" and len(line.get_xydata())]
         assert not (result.triangulated.stress.kind == PointKind.SINGULAR).any()
     cases = solved("eccentric_punch")
-    figure = figure_of_stresses(cases)
+    figure = page_of(figure_of_stresses, "eccentric_punch")
     assert "crosses: infinite stress" in figure.get_suptitle()
     for axes, result in zip(figure.axes, cases.results.values(), strict=False):
         body = result.triangulated
@@ -149,7 +152,6 @@ def test_each_panel_marks_the_largest_stress_or_those_that_are_infinite():
 @pytest.mark.parametrize("draw", [figure_of_contacts, figure_of_stresses, figures.figure_of])
 def test_titles_and_labels_lie_in_the_figure_and_apart(name: str, draw):
     figure = page_of(draw, name)
-    figure.draw_without_rendering()
     page = figure.bbox.padded(1.0)
     titles = [axes._left_title for axes in figure.axes if axes.get_title(loc="left")]  # pyright: ignore
     labels = [label for axes in figure.axes for label in (axes.xaxis.label, axes.yaxis.label) if label.get_text()]
