@@ -21,7 +21,10 @@ def test_references_are_met(name: str):
     assert result.certified
     assert result.holds
     known = expected(problem, result.contact)
-    assert all(item.holds or not item.judged for item in score(known, result.contact, result.footprint, result.solution.pressure))
+    assert all(
+        item.holds or not item.judged
+        for item in score(known, result.contact, result.footprint, result.solution.pressure)
+    )
 
 
 def test_the_bearing_is_held_and_its_rollers_are_copies():

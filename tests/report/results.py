@@ -7,11 +7,8 @@ from mesh_studies import punch, roller
 from tool_problems import FREE, FREE_CASES, made
 
 import bemcontact
-<<<<<<< HEAD
 from bemcontact import GapDesign, ParameterPath
-=======
 from bemcontact.analysis.case_comparisons import CaseComparisons, compare_cases
->>>>>>> w-tests
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.options import ComparisonOptions
@@ -44,7 +41,6 @@ def cases() -> CaseResults:
 
 
 @cache
-<<<<<<< HEAD
 def followed() -> ParameterPath:
     """A roller on a plane that is pressed more and more."""
     return bemcontact.follow(roller(), "conditions.top.pressure", 1.0, 0.0)
@@ -57,11 +53,12 @@ def designed() -> GapDesign:
     operator = bemcontact.stress_operator(problem, [[2.0, -2.0]])
     bounds = bemcontact.Relief(lower=0, upper=0.01, slope=0.003)
     return bemcontact.design_gap(operator.contact, bounds, stress=operator, von_mises=95)
-=======
+
+
+@cache
 def compared_cases() -> CaseComparisons:
     """The block between tools, by QP3 and directly."""
     return compare_cases(ComparisonOptions.of(["qp3"]), made(FREE, **FREE_CASES))
->>>>>>> w-tests
 
 
 EACH = {"roller": rolled, "punch": punched, "condensed": condensed, "cases": cases}

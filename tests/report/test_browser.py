@@ -1,29 +1,22 @@
 """The page in a real browser: nothing complains, all is drawn, fits, and can be read in the light and in the dark."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from chromium import executable, opened, started
+from mesh_studies import of_many_settings, on_three_meshes, with_infinite_peak
 from playwright.sync_api import Browser
 from reproductions import on_base_meshes
-<<<<<<< HEAD
 from results import cases, designed, followed, punched, rolled
-=======
->>>>>>> w-tests
 
 from bemcontact.report import folder
 
 pytestmark = pytest.mark.skipif(executable() is None, reason="there is no Chromium on this machine")
 
-<<<<<<< HEAD
 STUDIES = {"meshes": on_three_meshes, "settings": of_many_settings, "infinite": with_infinite_peak}
 RESULTS = {"result": rolled, "infinite stress": punched, "cases": cases}
 PAGES = {"path": (folder.save_path, followed, "path.html"), "design": (folder.save_design, designed, "design.html")}
-=======
-PAGES = dict.fromkeys(("meshes", "settings", "infinite"), "report.html")
-PAGES |= dict.fromkeys(("roller", "punch", "cases"), "result.html")
->>>>>>> w-tests
 PAPER = "paper"
 """The page of the paper's problems, beside those of mesh studies, results, paths and designs."""
 
@@ -101,7 +94,6 @@ def chromium() -> Iterator[Browser]:
         yield browser
 
 
-<<<<<<< HEAD
 @pytest.fixture(scope="module", params=[*STUDIES, *RESULTS, *PAGES, PAPER])
 def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("reports") / request.param
@@ -117,17 +109,6 @@ def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
         return place / "result.html"
     folder.save(STUDIES[request.param](), place, "name: x  # " + "long " * 60)
     return place / "report.html"
-=======
-@pytest.fixture(scope="module", params=[*PAGES, PAPER])
-def report(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, written: Callable[[str], Path]
-) -> Path:
-    if request.param != PAPER:
-        return written(request.param) / PAGES[request.param]
-    place = tmp_path_factory.mktemp("reports") / PAPER
-    folder.save_reproduction(on_base_meshes(), place)
-    return place / "page.html"
->>>>>>> w-tests
 
 
 @pytest.mark.parametrize(("width", "dark"), [(380, True), (1200, False)], ids=["narrow and dark", "wide and light"])
@@ -157,10 +138,10 @@ def test_a_picture_is_transparent_and_its_ink_follows_the_page(chromium: Browser
     assert dark != pytest.approx(light, abs=0.02)
 
 
-@pytest.mark.parametrize("report", ["cases"], indirect=True)
-def test_a_long_number_is_not_cut_on_a_telephone(chromium: Browser, report: Path):
+def test_a_long_number_is_not_cut_on_a_telephone(chromium: Browser, tmp_path: Path):
     """A force with its error and its unit is wider than what its label leaves of a card."""
-    with opened(chromium, report, width=380) as (page, _):
+    folder.save_result(cases(), tmp_path / "page", "name: x")
+    with opened(chromium, tmp_path / "page" / "result.html", width=380) as (page, _):
         cells, cut = page.evaluate(CUT_CELLS)
     assert cells > 10
     assert cut == 0

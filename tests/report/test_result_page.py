@@ -1,33 +1,23 @@
 """The page of a result: whole, with its numbers, and what is proved, estimated and not looked at apart."""
 
-<<<<<<< HEAD
 import re
-=======
-from collections.abc import Callable
->>>>>>> w-tests
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from page_reader import ensure_self_contained, read
-from results import EACH, cases, compared_cases, condensed, punched, rolled
+from results import EACH, cases, condensed, punched, rolled
+from tool_problems import FREE, FREE_CASES, made
 
-<<<<<<< HEAD
 import bemcontact
 from bemcontact.analysis.case_comparisons import compare_cases
-=======
->>>>>>> w-tests
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
-from bemcontact.options import StressMeasure
+from bemcontact.options import ComparisonOptions, StressMeasure
 from bemcontact.report.bars import NOTHING
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import peak_of, total_force
-<<<<<<< HEAD
 from bemcontact.report.figures import load_cases, pictures_of, vector_graphic
-=======
-from bemcontact.report.figures import pictures_of
->>>>>>> w-tests
 from bemcontact.report.result_page import NOT_LOOKED_AT, render
 from bemcontact.report.zones import zone_rows
 
@@ -40,12 +30,14 @@ def together(text: str) -> str:
 
 
 @pytest.mark.parametrize("name", EACH)
-def test_the_page_is_whole_and_needs_nothing_else(name: str, written: Callable[[str], Path]):
-    page = (written(name) / "result.html").read_text(encoding="utf-8")
+def test_the_page_is_whole_and_needs_nothing_else(name: str):
+    results = EACH[name]()
+    pictures = {key: vector_graphic(figure) for key, figure in pictures_of(results).items()}
+    page = render(results, pictures, "name: <x>")
     reader = read(page)
     ensure_self_contained(page, reader)
     shown = [attrs for tag, attrs in reader.tags if tag == "img"]
-    assert len(shown) == len([*(written(name) / "figures").iterdir()])
+    assert len(shown) == len(pictures)
     assert all(picture["alt"] for picture in shown)
     assert "name: <x>" in reader.text
 
@@ -92,7 +84,7 @@ def test_stress_that_is_infinite_is_told_before_its_picture_is_believed():
 
 def test_the_page_of_load_cases_has_one_picture_of_their_stress_before_its_table():
     """With the stress that was asked for in its caption, and the load cases in its text alternative."""
-    drawn = dict.fromkeys(pictures_of(cases(), StressMeasure.MAX_SHEAR), b"<svg/>")
+    drawn = {name: vector_graphic(it) for name, it in pictures_of(cases(), StressMeasure.MAX_SHEAR).items()}
     page = render(cases(), drawn, None, stress=StressMeasure.MAX_SHEAR)
     stress = page[page.index('<section id="stress">') : page.index('<section id="zones">')]
     before_table = stress[: stress.index("<table")]
@@ -125,7 +117,7 @@ def test_load_cases_have_the_largest_of_all():
 
 def test_formulations_are_compared_under_each_load_case():
     """The page says of each whether it solves the problem; the head says what the answer is first."""
-    compared = compared_cases()
+    compared = compare_cases(ComparisonOptions.of(["qp3"]), made(FREE, **FREE_CASES))
     text = together(read(render(compared.answers, {}, None, compared)).text)
     for case, level in compared.levels.items():
         (contender,) = level.comparison.contenders
