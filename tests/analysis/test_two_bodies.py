@@ -52,6 +52,7 @@ def over_hertz(lower: str, curvature: float, half_width: float) -> tuple[np.ndar
     result = bemcontact.solve(quarter_cylinder_on(lower, load))
     assert result.certified
     assert result.holds
+    assert result.footprint.peak
     (interval,) = result.footprint.intervals
     ends = [result.footprint.peak.pressure / (2 * load / np.pi / half_width), interval.end[0] / half_width]
     bars = {bar.quantity: bar.bar for bar in result.accuracy.bars}
@@ -108,6 +109,7 @@ def test_contact_of_a_receding_layer_is_as_long_under_any_load():
     for pressure in (0.01, 1.0, 30.0):
         result = bemcontact.solve(layer_on_block(pressure))
         assert result.certified
+        assert result.footprint.peak
         (interval,) = result.footprint.intervals
         lengths.append(interval.end[0])
         peaks.append(result.footprint.peak.pressure / pressure)

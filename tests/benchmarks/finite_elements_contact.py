@@ -7,7 +7,6 @@ candidate nodes along the normals of the rigid surface; then an active set on ga
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -252,7 +251,7 @@ def press(
     turned, freedom = local_axes(body, nodes, normals)
     candidate = ~np.isin(freedom, body.held_freedoms)
     epsilon = gap(nodes)
-    u, force = contact_state(body, load, turned, freedom[candidate], epsilon[candidate])
+    u, force = contact_state(body.stiffness, body.held_freedoms, load, turned, freedom[candidate], epsilon[candidate])
     nodal = np.zeros(len(nodes))
     nodal[candidate] = force
     displacement = (turned @ u)[body.freedoms].T
@@ -291,29 +290,15 @@ def local_axes(body: ElasticBody, nodes: IntArray, normals: Array) -> tuple[spar
     return sparse.csr_matrix(entries, shape=(size, size)), freedom
 
 
-class Stiff(Protocol):
-    """What contact needs of a body, or of several."""
-
-    @property
-    def stiffness(self) -> sparse.csr_matrix:
-        """K."""
-        ...
-
-    @property
-    def held_freedoms(self) -> IntArray:
-        """Unknowns that are zero."""
-        ...
-
-
 def contact_state(
-    body: Stiff, load: Array, turned: sparse.csr_matrix, freedom: IntArray, gap: Array
+    stiffness: sparse.csr_matrix, held: IntArray, load: Array, turned: sparse.csr_matrix, freedom: IntArray, gap: Array
 ) -> tuple[Array, Array]:
-    """Displacement u' of all unknowns and forces along the normals of the candidates.
+    """Displacement u' of all unknowns, of which some are held, and forces along the normals of the candidates.
 
     S u_n = g + force is what is left of K' u' = f' when all unknowns but those along the normals are eliminated.
     """
-    stiffness, f = (turned.T @ body.stiffness @ turned).tocsr(), turned.T @ load
-    inner = np.setdiff1d(np.arange(len(f)), np.concatenate([body.held_freedoms, freedom]))
+    stiffness, f = (turned.T @ stiffness @ turned).tocsr(), turned.T @ load
+    inner = np.setdiff1d(np.arange(len(f)), np.concatenate([held, freedom]))
     lu, coupling = factorized(stiffness[inner][:, inner]), stiffness[freedom][:, inner]
     S = stiffness[freedom][:, freedom].toarray() - coupling @ lu.solve(coupling.T.toarray())
     g = f[freedom] - coupling @ lu.solve(f[inner])

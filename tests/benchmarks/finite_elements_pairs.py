@@ -51,14 +51,6 @@ class Side:
         return nodes[np.argsort(self.coordinate(*self.body.nodes[nodes].T))]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Joined:
-    """Two bodies with one list of unknowns, those of A first."""
-
-    stiffness: sparse.csr_matrix
-    held_freedoms: IntArray
-
-
 def press_together(a: Side, b: Side, normal: Place) -> Touch:
     """Press two elastic bodies together.
 
@@ -77,14 +69,13 @@ def press_together(a: Side, b: Side, normal: Place) -> Touch:
     turned_a, freedom = local_axes(a.body, at, normals)
     turned_b, opposite = local_axes(b.body, there, normals)
     opposite = opposite + a.body.freedoms.size
-    joined = Joined(
-        stiffness=sparse.block_diag([a.body.stiffness, b.body.stiffness]).tocsr(),
-        held_freedoms=np.concatenate([a.body.held_freedoms, b.body.held_freedoms + a.body.freedoms.size]),
-    )
-    if np.isin(np.append(freedom, opposite), joined.held_freedoms).any():
+    stiffness = side_by_side(a.body.stiffness, b.body.stiffness)
+    held = np.concatenate([a.body.held_freedoms, b.body.held_freedoms + a.body.freedoms.size])
+    if np.isin(np.append(freedom, opposite), held).any():
         raise ValueError("a node of a pair is held along its normal")
-    turned = (sparse.block_diag([turned_a, turned_b]) @ relative(freedom, opposite, joined.stiffness.shape[0])).tocsr()
-    u, force = contact_state(joined, np.append(a.load, b.load), turned, freedom, gap)
+    to_pairs = relative(freedom, opposite, len(a.load) + len(b.load))
+    turned = side_by_side(turned_a, turned_b).dot(to_pairs)
+    u, force = contact_state(stiffness, held, np.append(a.load, b.load), turned, freedom, gap)
     displacement = turned @ u
     sides = a.body.sides(a.level)
     return Touch(
@@ -97,6 +88,11 @@ def press_together(a: Side, b: Side, normal: Place) -> Touch:
         nodes=a.body.nodes,
         displacement=displacement[a.body.freedoms].T,
     )
+
+
+def side_by_side(of_a: sparse.csr_matrix, of_b: sparse.csr_matrix) -> sparse.csr_matrix:
+    """Matrix of both bodies, without coupling."""
+    return sparse.csr_matrix(sparse.block_diag([of_a, of_b], format="csr"))
 
 
 def relative(freedom: IntArray, opposite: IntArray, size: int) -> sparse.csr_matrix:

@@ -251,7 +251,7 @@ def pressed(size: float) -> Pressed:
         normals.append(np.column_stack(support.normal(x, y)))
         gaps.append(support.gap(x, y))
     turned, freedom = local_axes(body, np.concatenate(nodes), np.vstack(normals))
-    u, force = contact_state(body, load, turned, freedom, np.concatenate(gaps))
+    u, force = contact_state(body.stiffness, body.held_freedoms, load, turned, freedom, np.concatenate(gaps))
     contacts, forces = {}, {}
     for (name, support), own, part in zip(
         SUPPORTS.items(), nodes, np.split(force, np.cumsum([len(own) for own in nodes])[:-1]), strict=True

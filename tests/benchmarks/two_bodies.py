@@ -169,10 +169,11 @@ def of_bemcontact(problem: Problem, accuracy: float) -> tuple[Array, Array, floa
     start = time.process_time()
     result = bemcontact.solve(bemcontact.loads(f"{problem.spec}accuracy: {accuracy}\n"))
     seconds = time.process_time() - start
-    if not (result.certified and result.holds):
+    peak = result.footprint.peak
+    if not (result.certified and result.holds and peak):
         raise RuntimeError(f"no certified answer: {result.notes}")
     (interval,) = result.footprint.intervals
-    value = np.array([result.footprint.peak.pressure, float(problem.coordinate(*interval.end))])
+    value = np.array([peak.pressure, problem.coordinate(*np.array(interval.end)).item()])
     bars = {bar.quantity: bar.bar for bar in result.accuracy.bars}
     return value, value * [bars["peak"], bars["end"]], seconds  # contact begins at 0, so its length is that of the end
 
