@@ -1,6 +1,7 @@
 """Results for tests of pages, tables and folders: of one load, of load cases, infinite, condensed."""
 
 from functools import cache
+from pathlib import Path
 
 from mesh_studies import punch, roller
 from tool_problems import FREE, FREE_CASES, made
@@ -10,6 +11,7 @@ from bemcontact.analysis.case_comparisons import CaseComparisons, compare_cases
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.options import ComparisonOptions
+from bemcontact.parametric.parameter_path import ParameterPath
 
 
 @cache
@@ -40,6 +42,15 @@ def cases() -> CaseResults:
 def compared_cases() -> CaseComparisons:
     """The block between tools, by QP3 and directly."""
     return compare_cases(ComparisonOptions.of(["qp3"]), made(FREE, **FREE_CASES))
+
+
+LINK = bemcontact.load(Path(__file__).parents[2] / "models" / "gallery" / "three_zones.yaml", variant="stated mesh")
+
+
+@cache
+def linked() -> ParameterPath:
+    """The link on three surfaces, from no load to its load."""
+    return bemcontact.follow(LINK, "conditions.loaded.pressure", 20, 0)
 
 
 EACH = {"roller": rolled, "punch": punched, "condensed": condensed, "cases": cases}
