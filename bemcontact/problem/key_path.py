@@ -34,6 +34,7 @@ NAMED: Mapping[str | int, str] = {
     "materials": "material",
     "bodies": "body",
     "contacts": "contact",
+    "bonded": "bond",
     "contact_zones": "contact zone",
     "tools": "tool",
     "load_cases": "load case",

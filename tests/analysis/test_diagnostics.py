@@ -61,9 +61,11 @@ def test_a_flat_side_on_knife_edges_is_not_hardly_held_but_not_at_all():
     """The normal of a flat side on an edge is that of the side: no slope holds it, and one note says so."""
     edges = {"left": [[5, -20], [20, 0], [35, -20]], "right": [[65, -20], [80, 0], [95, -20]]}
     data: dict = {
-        "name": "beam on two edges", "material": {"young_modulus": 210e3, "poisson_ratio": 0.3}, "accuracy": 0.3,
-        "boundary": {"outer": [{"name": "bottom", "start": [0, 0]}, {"name": "end", "start": [100, 0]},
-                               {"name": "top", "start": [100, 10]}, {"name": "begin", "start": [0, 10]}]},
+        "name": "beam on two edges", "material": {"young_modulus": 210e3, "poisson_ratio": 0.3}, "accuracy": None,
+        "boundary": {"outer": [
+            {"name": "bottom", "start": [0, 0], "elements": 20}, {"name": "end", "start": [100, 0], "elements": 2},
+            {"name": "top", "start": [100, 10], "elements": 20}, {"name": "begin", "start": [0, 10], "elements": 2},
+        ]},
         "conditions": {"top": {"pressure": 0.01}},
         "contact_zones": {name: {"edges": "bottom", "surface": {"kind": "polyline", "points": points}}
                           for name, points in edges.items()},

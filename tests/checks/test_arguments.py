@@ -39,6 +39,7 @@ SPEC: dict[str, Any] = {
 }
 WIND = {"load_cases": {"wind": {"conditions": {"right": {"pressure": 1}}}}}
 PROBLEM = bemcontact.Problem(**deepcopy(SPEC))
+ON_ITS_MESH = PROBLEM.with_value("accuracy", None)
 CASES = bemcontact.Problem(**deepcopy({**SPEC, **WIND}))
 BODY = bemcontact.condense(CASES)
 CONTACT = replace(random_contact(0, 4, 1), name="four points")
@@ -89,7 +90,7 @@ CALLS: dict[str, Call] = {
             "progress": None, "starts": 1, "seed": 0,
         },
     ),
-    "follow": (bemcontact.follow, {"problem": PROBLEM, "key": "conditions.top.pressure", "to": 3.0, "start": 1.0}),
+    "follow": (bemcontact.follow, {"problem": ON_ITS_MESH, "key": "conditions.top.pressure", "to": 3.0, "start": 1.0}),
     "sensitivities": (bemcontact.sensitivities, {"problem": CONTACT, "changes": None}),
     "sensitivities, change": (
         lambda offset, motion_load: bemcontact.sensitivities(CONTACT, {"a": Change(offset, motion_load)}),
@@ -104,7 +105,7 @@ CALLS: dict[str, Call] = {
     "study": (
         bemcontact.study,
         {
-            "problem": PROBLEM, "vary": {"conditions.top.pressure": [1.0]}, "outputs": ("peak",), "workers": 1,
+            "problem": ON_ITS_MESH, "vary": {"conditions.top.pressure": [1.0]}, "outputs": ("peak",), "workers": 1,
             "scheduler": None, "accuracy": None, "progress": None,
         },
     ),

@@ -12,8 +12,10 @@ from bemcontact.analysis.case_comparisons import CaseComparisons, compare_cases
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.options import ComparisonOptions
+from bemcontact.parametric.parameter_path import ParameterPath
 
 MODELS = Path(__file__).parents[2] / "models"
+LINK = bemcontact.load(MODELS / "gallery" / "three_zones.yaml", variant="stated mesh")
 
 
 @cache
@@ -59,6 +61,12 @@ def designed() -> GapDesign:
 def compared_cases() -> CaseComparisons:
     """The block between tools, by QP3 and directly."""
     return compare_cases(ComparisonOptions.of(["qp3"]), made(FREE, **FREE_CASES))
+
+
+@cache
+def linked() -> ParameterPath:
+    """The link on three surfaces, from no load to its load."""
+    return bemcontact.follow(LINK, "conditions.loaded.pressure", 20, 0)
 
 
 EACH = {"roller": rolled, "punch": punched, "condensed": condensed, "cases": cases}

@@ -31,7 +31,7 @@ FAN = "#d55e00"
 
 @cache
 def solved(name: str) -> CaseResults:
-    return bemcontact.solve_cases(bemcontact.load(GALLERY / f"{name}.yaml"))
+    return bemcontact.solve_cases(bemcontact.load(GALLERY / f"{name}.yaml").with_value("accuracy", 0.05))
 
 
 def contours(axes: Axes) -> TriContourSet:

@@ -81,13 +81,16 @@ def test_each_study_has_its_pictures():
 
 
 @pytest.mark.parametrize(
-    "study", [on_three_meshes, of_many_settings, without_contact], ids=lambda study: study.__name__
+    ("study", "again"),
+    [(on_three_meshes, None), (of_many_settings, {"difference"}), (without_contact, {"pressure"})],
+    ids=["on_three_meshes", "of_many_settings", "without_contact"],
 )
-def test_pictures_are_the_same_each_time_and_light_enough(study: Callable[[], MeshStudy]):
-    first, second = (
-        {name: figures.vector_graphic(figure) for name, figure in figures.figures_of(study()).items()} for _ in range(2)
-    )
-    assert first == second
+def test_pictures_are_the_same_each_time_and_light_enough(study: Callable[[], MeshStudy], again: set[str] | None):
+    """A second time are drawn all of the first study, and of the others what it has not."""
+    first = {name: figures.vector_graphic(figure) for name, figure in figures.figures_of(study()).items()}
+    second = figures.figures_of(study())
+    for name in second if again is None else again:
+        assert figures.vector_graphic(second[name]) == first[name], name
     for name, picture in first.items():
         assert len(picture) < 150_000, name
         root = ElementTree.fromstring(picture)

@@ -8,11 +8,12 @@ import pytest
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from mesh_studies import punch
+from results import linked
 
 import bemcontact
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.report import figures, folder
+from bemcontact.report import figures
 from bemcontact.report.path_verdicts import path_sentence
 
 MODELS = Path(__file__).parents[3] / "models"
@@ -20,20 +21,27 @@ MODELS = Path(__file__).parents[3] / "models"
 
 @pytest.fixture(scope="module")
 def link() -> ParameterPath:
-    problem = bemcontact.load(MODELS / "gallery" / "three_zones.yaml", variant="stated mesh")
-    return bemcontact.follow(problem, "conditions.loaded.pressure", 20, 0)
+    return linked()
 
 
-def test_page_has_a_picture_of_each_zone(link: ParameterPath):
-    page = figures.figure_of_path(link)
+@pytest.fixture(scope="module")
+def page(link: ParameterPath) -> Figure:
+    return figures.figure_of_path(link)
+
+
+@pytest.fixture(scope="module")
+def pictures(link: ParameterPath) -> dict[str, Figure]:
+    return figures.figures_of_path(link)
+
+
+def test_page_has_a_picture_of_each_zone(page: Figure):
     labels = [axes.get_ylabel() for axes in page.axes]
     assert labels == ["peak pressure [N/mm²]", "resultant [N/mm]", *(f"distance along {zone} [mm]" for zone in
                       ("drum", "table", "wall"))]  # fmt: skip
     assert page.axes[-1].get_xlabel() == "conditions.loaded.pressure"
 
 
-def test_lines_are_the_states(link: ParameterPath):
-    page = figures.figure_of_path(link)
+def test_lines_are_the_states(link: ParameterPath, page: Figure):
     line, dots, *_ = page.axes[0].lines
     np.testing.assert_array_equal(line.get_xydata(), [(state.value, state.peak) for state in link.states])
     np.testing.assert_array_equal(dots.get_xydata(), [(state.value, state.peak) for state in link.breakpoints])
@@ -44,15 +52,6 @@ def test_lines_are_the_states(link: ParameterPath):
     interval = link.states[-1].footprint.intervals[0]
     assert np.asarray(start.get_ydata())[-1] == interval.start_arc
     assert np.asarray(end.get_ydata())[-1] == interval.end_arc
-
-
-def test_a_path_written_twice_is_the_same(link: ParameterPath, tmp_path: Path):
-    for name in ("a", "b"):
-        folder.save_path(link, tmp_path / name)
-    written = {item.relative_to(tmp_path / "a") for item in (tmp_path / "a").rglob("*") if item.is_file()}
-    assert len(written) == 3 + 4 + len(link.zones)  # page, table, numbers; pictures
-    for name in written:
-        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
 
 def test_verdict_is_a_sentence(link: ParameterPath):
@@ -95,8 +94,8 @@ def test_errors_of_forces_and_ends_are_bars(link: ParameterPath):
     np.testing.assert_allclose(drawn[1], expected)
 
 
-def test_accuracies_of_both_ends_are_in_the_title(link: ParameterPath):
-    title = figures.figure_of_path(link).axes[0].get_title()
+def test_accuracies_of_both_ends_are_in_the_title(page: Figure):
+    title = page.axes[0].get_title()
     assert "unique solution proved" in title
     assert all(f"at {value}: " in title for value in (0, 20))
 
@@ -120,17 +119,17 @@ def test_the_start_of_a_path_is_at_the_left_though_its_value_falls():
             assert left > 20 > 10 > right
 
 
-def test_moments_are_those_of_the_states(link: ParameterPath):
+def test_moments_are_those_of_the_states(link: ParameterPath, pictures: dict[str, Figure]):
     """Curves equal data; that the moments are those of the forces is tested with the path."""
-    lines = figures.figures_of_path(link)["moment"].axes[0].lines[::2]
+    lines = pictures["moment"].axes[0].lines[::2]
     for order, line in enumerate(lines):
         moments = np.array([state.moments[order] for state in link.states])
         np.testing.assert_allclose(line.get_ydata(), moments, rtol=0, atol=1e-12 * np.abs(moments).max())
 
 
-def test_panels_are_states_of_the_path(link: ParameterPath):
+def test_panels_are_states_of_the_path(link: ParameterPath, pictures: dict[str, Figure]):
     """The first and the last panel are the ends; all have one scale, the largest pressure in it."""
-    panels = figures.figures_of_path(link)["pressure"].axes
+    panels = pictures["pressure"].axes
     first, last = (link.path.pressure[i] for i in (0, -1))
     for axes, pressure in ((panels[0], first), (panels[-1], last)):
         drawn = np.concatenate([np.asarray(line.get_ydata()) for line in axes.lines])
