@@ -12,7 +12,6 @@ from bemcontact.analysis.case_comparisons import CaseComparisons, compare_cases
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.options import ComparisonOptions
-from bemcontact.parametric.parameter_path import ParameterPath
 
 MODELS = Path(__file__).parents[2] / "models"
 LINK = bemcontact.load(MODELS / "gallery" / "three_zones.yaml", variant="stated mesh")
