@@ -31,6 +31,12 @@ TABLES = (Path("README.md"), Path(".docs", "validation", "closed_forms.md"))
 """Pages with tables of errors that are written by hand, but for their numbers."""
 CASES = {"eccentric_punch": "beyond half", "roller_in_v_block": "down and aside"}
 """The load case in the picture, where it is not the first one."""
+FOLDERS = {
+    "models": "Problems of the paper, and the flat slit beside the crack",
+    "models/gallery": "Problems with closed forms and statics",
+    "models/bodies": "Problems of several elastic bodies",
+}
+"""Folders of problems, with the headings of their tables."""
 SMALL = 0.08
 """Extent of the only contact over that of the body below which a close-up is drawn."""
 README = ("cylinder_on_plane", "bolt_in_plate")
@@ -49,7 +55,7 @@ Each file here states one problem with a known answer. This command solves one a
 bemcontact solve models/cylinder_on_plane.yaml --figure contact.svg
 ```
 
-- Grey: the body, with its displacements to scale, and hatched rigid surfaces. Dashed lines show the undeformed body.
+- Grey: the bodies, with displacements to scale, and hatched rigid surfaces. Dashed lines show the undeformed bodies.
   Where the contact is small, only the part of the body around it is drawn.
 - Blue: supports. A model of a half or a quarter has rollers on its planes of symmetry.
 - Green: loads on the boundary.
@@ -68,21 +74,16 @@ file.
 
 def models() -> list[Path]:
     """All problems, those of the paper first."""
-    return [path for folder in ("models", "models/gallery") for path in sorted((ROOT / folder).glob("*.yaml"))]
+    return [path for folder in FOLDERS for path in sorted((ROOT / folder).glob("*.yaml"))]
 
 
 def page() -> str:
     """Write the gallery."""
-    return "\n".join(
-        [
-            HEAD,
-            "## Problems of the paper, and the flat slit beside the crack\n",
-            *_table(path for path in models() if path.parent.name == "models"),
-            "\n## Problems with closed forms and statics\n",
-            *_table(path for path in models() if path.parent.name == "gallery"),
-            "",
-        ]
-    )
+    text = HEAD
+    for folder, title in FOLDERS.items():
+        rows = _table(path for path in models() if path.parent == ROOT / folder)
+        text += "\n".join(["", f"## {title}", "", *rows, ""])
+    return text
 
 
 @cache

@@ -34,7 +34,7 @@ def stress_operator(problem: Problem | Result, points: ArrayLike) -> StressOpera
     Raises
     ------
     ProblemError
-        If a point is outside the body, or at a place where stress may be infinite; otherwise as of `condense`.
+        If there are several bodies, a point is outside the body, or at a place where stress may be infinite; otherwise as of `condense`.
     SingularSystemError
         If the equations of the body have no unique solution.
     """
@@ -49,6 +49,10 @@ def stress_operator(problem: Problem | Result, points: ArrayLike) -> StressOpera
 def operator_of(condensation: Condensation, points: ArrayLike) -> StressOperator:
     """The operator of a body that has been condensed."""
     body, contact = condensation.body, condensation.contact
+    if len(body.problem.parts) > 1:
+        raise ProblemError(
+            "a stress operator is of one body, and this problem has several; ask the result for its stress"
+        )
     displacement, traction = boundary_columns(condensation)
     loads = [of_parts[0] for of_parts in body.problem.volume_loads]
     factors = np.zeros((displacement.shape[2], len(loads)))

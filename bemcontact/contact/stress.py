@@ -180,7 +180,7 @@ class LargestStresses(WithHints):
     """Largest equivalent stress of von Mises along the edges, but for lines of symmetry, and for edges along which it
     grows up to an infinite one."""
     missing: dict[str, NoPeak]
-    """Why there is no largest stress, by `SHEAR_BELOW` with the name of a zone, `INSIDE` and `ON_BOUNDARY`."""
+    """Why there is no largest stress, by the words of its row: shear below each zone, inside and on the boundary."""
     singular: Array
     """Places (s, 2) [L] where stress is infinite: the body has no largest stress if there are any."""
 

@@ -145,7 +145,7 @@ def test_finer_mesh_has_the_same_maximum():
         contact_zones={"foot": {"edges": "bottom", "surface": circle}},
     ))  # fmt: skip
     own = result.largest_stresses().inside
-    finer = _on_mesh(result.problem.refined(4), result.accuracy.infinite_places).largest
+    finer = _on_mesh(result.problem.refined(3), result.accuracy.infinite_places).largest
     assert finer.inside.value == pytest.approx(own.value, rel=own.bar)
 
 

@@ -282,3 +282,13 @@ def test_bodies_that_bulge_into_each_other_below_a_third_are_named():
     penetration = solved(bodies, 0.05, one=["c", "a"], two=["c", "b"]).penetration
     assert penetration is not None
     assert "between: [a, b]" in penetration.words or "between: [b, a]" in penetration.words
+
+
+def test_a_stress_operator_is_of_one_body():
+    bodies = {
+        "up": elastic(block((0, 1), (0, 1)), {"top": {"pressure": 1.0}}),
+        "low": elastic(block((0, 1), (-1, 0)), HELD),
+    }
+    spec = problem(bodies, face={"between": ["up/bottom", "low/top"]}, accuracy=0.05)
+    with pytest.raises(bemcontact.ProblemError, match="is of one body, and this problem has several"):
+        bemcontact.stress_operator(spec, [[0.5, 0.5]])

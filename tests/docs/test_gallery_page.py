@@ -14,6 +14,8 @@ from bemcontact.reference import expected, score
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "models" / "README.md").read_text(encoding="utf-8")
 MODELS = sorted(path.relative_to(ROOT / "models").as_posix() for path in (ROOT / "models").rglob("*.yaml"))
+LONG = {"bodies/roller_bearing.yaml"}
+"""Problems that take more than 20 s: the command that writes the page solves them, the tests do not."""
 PERCENT = r"\d[\d.e+-]*(?= %)"
 
 
@@ -77,11 +79,12 @@ def test_a_table_of_errors_is_filled_in(gallery: ModuleType):
         gallery.filled("| `shrink_fit` | half-width | 9 % | 9 % |")
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", [model for model in MODELS if model not in LONG])
 def test_accuracy_is_met_and_so_are_the_references(gallery: ModuleType, model: str):
     """On the mesh that is found, one for all load cases: no edge states elements."""
     path = ROOT / "models" / model
-    assert not any(edge.elements for edge in bemcontact.load(path).boundary.edges)
+    problem = bemcontact.load(path)
+    assert not any(edge.elements for part in problem.parts for edge in part.edges)
     for answer in gallery.results(path).values():
         assert answer.holds
         assert answer.accuracy.asked <= 0.01

@@ -1,4 +1,4 @@
-"""Every file in models/bodies/ is certified, as accurate as it asks, and meets its references."""
+"""The roller bearing is held, and its rollers are copies on a circle; the gallery page judges all other files."""
 
 from pathlib import Path
 
@@ -6,25 +6,10 @@ import numpy as np
 import pytest
 
 import bemcontact
-from bemcontact.reference import expected, score
 
 FOLDER = Path(__file__).parents[2] / "models" / "bodies"
 MANY = "roller_bearing"
 """Eleven bodies, which take half a minute: they are checked here, not solved."""
-NAMES = sorted(path.stem for path in FOLDER.glob("*.yaml") if path.stem != MANY)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_references_are_met(name: str):
-    problem = bemcontact.load(FOLDER / f"{name}.yaml")
-    result = bemcontact.solve(problem)
-    assert result.certified
-    assert result.holds
-    known = expected(problem, result.contact)
-    assert all(
-        item.holds or not item.judged
-        for item in score(known, result.contact, result.footprint, result.solution.pressure)
-    )
 
 
 def test_the_bearing_is_held_and_its_rollers_are_copies():
