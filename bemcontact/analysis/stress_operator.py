@@ -34,7 +34,8 @@ def stress_operator(problem: Problem | Result, points: ArrayLike) -> StressOpera
     Raises
     ------
     ProblemError
-        If there are several bodies, a point is outside the body, or at a place where stress may be infinite; otherwise as of `condense`.
+        If there are several bodies, or a point is outside the body or where stress may be infinite; otherwise as of
+        `condense`.
     SingularSystemError
         If the equations of the body have no unique solution.
     """

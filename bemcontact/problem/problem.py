@@ -145,11 +145,11 @@ class Problem(StatedBodies):
     @classmethod
     def _missing_parts(cls, raw: RawValue) -> Iterator[Issue]:
         """Issues of a problem of one body without one of its parts."""
-        if raw.below(cls, "bodies").value:
+        bodies, zones = raw.below(cls, "bodies").value, raw.below(cls, "contact_zones")
+        if bodies is not None and not (isinstance(bodies, Mapping) and not bodies):
             return
         yield from missing_keys(cls, raw.value, OF_ONE_BODY)
-        zones = raw.below(cls, "contact_zones")
-        if zones.value == {}:
+        if isinstance(zones.value, Mapping) and not zones.value:
             yield Issue(path=zones.path, message=NO_CONTACT)
 
     @classmethod

@@ -37,7 +37,8 @@ BODIES = MESHES | {
 }
 
 MODELS = Path(__file__).parents[2] / "models"
-SHIPPED = sorted(path.relative_to(MODELS).with_suffix("").as_posix() for path in MODELS.rglob("*.yaml"))
+OF_ONE_BODY = [path for path in sorted(MODELS.rglob("*.yaml")) if path.parent.name != "bodies"]
+SHIPPED = [path.relative_to(MODELS).with_suffix("").as_posix() for path in OF_ONE_BODY]
 
 
 def displacement(points):
