@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "models" / "README.md").read_text(encoding="utf-8")
 MODELS = sorted(path.relative_to(ROOT / "models").as_posix() for path in (ROOT / "models").rglob("*.yaml"))
 LONG = {"bodies/roller_bearing.yaml"}
-"""Problems that take more than 20 s: the command that writes the page solves them, the tests do not."""
+"""Eleven bodies: the command that writes the page solves them, the tests do not, and their picture is larger."""
 PERCENT = r"\d[\d.e+-]*(?= %)"
 
 
@@ -38,7 +38,8 @@ def test_each_problem_has_its_row():
 def test_each_picture_is_there_and_small(name: str):
     picture = ROOT / ".docs" / "pictures" / f"{name}.svg"
     assert ElementTree.parse(picture).getroot().tag == "{http://www.w3.org/2000/svg}svg"
-    assert picture.stat().st_size < (52_000 if name == "contact" else 40_000)
+    size = 52_000 if name == "contact" else 80_000 if f"bodies/{name}.yaml" in LONG else 40_000
+    assert picture.stat().st_size < size
     assert "<dc:date>" not in picture.read_text(encoding="utf-8")
 
 
