@@ -50,7 +50,8 @@ def stress_operator(problem: Problem | Result, points: ArrayLike) -> StressOpera
 def operator_of(condensation: Condensation, points: ArrayLike) -> StressOperator:
     """The operator of a body that has been condensed."""
     body, contact = condensation.body, condensation.contact
-    if len(body.problem.parts) > 1:
+    part, *others = body.problem.parts
+    if others:
         raise ProblemError(
             "a stress operator is of one body, and this problem has several; ask the result for its stress"
         )
@@ -58,7 +59,7 @@ def operator_of(condensation: Condensation, points: ArrayLike) -> StressOperator
     loads = [of_parts[0] for of_parts in body.problem.volume_loads]
     factors = np.zeros((displacement.shape[2], len(loads)))
     np.fill_diagonal(factors, 1.0)
-    field = StressField.of(body.outline, body.problem.parts[0].material, displacement, traction, loads, factors)
+    field = StressField.of(body.outline, part.material, displacement, traction, loads, factors)
     at = field.locate(real_array(points, "points", (None, 2)))
     ensure_in_body(field, at)
     kind = kinds(field, at, _may_be_infinite(field, body.points.element))
