@@ -270,7 +270,13 @@ def test_contact_across_the_end_of_a_closed_zone_is_one_curve():
             assert np.trapezoid(y, x) == pytest.approx(result.contact.weights @ result.solution.pressure, rel=0.02)
 
 
-@pytest.mark.parametrize("path", sorted(MODELS.rglob("*.yaml")), ids=lambda path: path.stem)
+EACH_MODEL = [
+    pytest.param(path, id=path.stem, marks=pytest.mark.slow if path.stem == "roller_bearing" else ())
+    for path in sorted(MODELS.rglob("*.yaml"))
+]
+
+
+@pytest.mark.parametrize("path", EACH_MODEL)
 def test_the_picture_of_each_model_can_be_drawn(path: Path):
     """Contact up to a clamp, all round a hole, of a slit and under load cases; the largest stress is in its colors."""
     variants = spec.load(path).variants
