@@ -1,4 +1,4 @@
-"""Frictionless contact of elastic bodies with rigid surfaces: boundary elements, quadratic programs, a certificate.
+"""Frictionless contact of elastic bodies and rigid surfaces: boundary elements, quadratic programs, a certificate.
 
 >>> import bemcontact
 >>> problem = bemcontact.load("models/cylinder_on_plane.yaml")  # doctest: +SKIP

@@ -51,6 +51,9 @@ class LevelRecord(Record):
     """Time of each stage."""
     notes: tuple[str, ...]
     """Remarks on the answer and its mesh."""
+    sides: dict[str, tuple[str, str]]
+    """The bodies of each contact, first the one on which its force acts; the second is '' for a rigid surface. Empty
+    if an only body touches rigid surfaces."""
     force_balance: float | None
     """Resultant of all forces on the body over their sum, from the recovered tractions; null without a boundary."""
     equilibrium_slack: float | None
@@ -137,6 +140,7 @@ class MeshLevel:
             dof=answer.degrees_of_freedom,
             seconds=answer.seconds,
             notes=answer.notes,
+            sides=answer.sides,
             force_balance=answer.residuals.force_balance,
             equilibrium_slack=answer.equilibrium_slack,
             accuracy=answer.accuracy,

@@ -238,7 +238,7 @@ def _changed(
         else "with the gaps after this motion, contact does not hold the body"
     )
     words = (
-        f"the body and the surface of '{zone}' move by {_vector(motion, gaps.problem.units.length)} against each "
+        f"both sides of '{zone}' move by {_vector(motion, gaps.problem.units.length)} against each "
         f"other, which is not small beside their shapes: {effect}; {_remedy(gaps, motion)}"
     )
     if solved and abs(change) < WITHHELD:
@@ -308,7 +308,7 @@ def _forces_changed(
     units = gaps.problem.units
     gained = _vector(is_now[number] - was[number], units.line_force)
     words = (
-        f"the body and the surface of '{zone}' move by {_vector(motion, units.length)} against each other, which is "
+        f"both sides of '{zone}' move by {_vector(motion, units.length)} against each other, which is "
         "not small beside their shapes: with the gaps and the directions of the surfaces where the body then is, the "
         f"force between them changes by {gained}, along {'xy'[axis]} by "
         f"{_of_component(part, float(was[number, axis]), float(size[number, axis]))}; "

@@ -93,6 +93,9 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     condensed problem, whose boundary was not looked at."""
     boundary: BoundaryRecord | None
     """State of the whole boundary; null for a condensed problem."""
+    sides: dict[str, tuple[str, str]]
+    """The bodies of each contact, first the one on which its force acts; the second is '' for a rigid surface. Empty
+    if an only body touches rigid surfaces."""
     seconds: dict[str, float]
     """Time of each stage."""
 
@@ -301,6 +304,13 @@ class Result(Recorded):
                             pressure[element, local], gap[element, local] = here[0], gaps[i]
         return pressure, gap
 
+    @property
+    def sides(self) -> dict[str, tuple[str, str]]:
+        """The bodies of each contact, first the one on which its force acts; empty with an only body or none."""
+        if self.problem is None or not self.problem.several:
+            return {}
+        return {zone: self.problem.touching_bodies(zone) for zone in self.problem.zones}
+
     def record(self) -> ResultRecord:
         """Return the record that is written as JSON."""
         boundary = self.boundary
@@ -324,6 +334,7 @@ class Result(Recorded):
             equilibrium_slack=self.equilibrium_slack,
             certificate=self.certificate,
             penetration=self.penetration,
+            sides=self.sides,
             boundary=None
             if boundary is None
             else BoundaryRecord(

@@ -65,7 +65,7 @@ def bemcontact(
         bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
     ] = False,
 ) -> None:
-    """Frictionless contact of an elastic body with rigid surfaces: plane boundary elements, quadratic programming.
+    """Frictionless contact of elastic bodies and rigid surfaces: plane boundary elements, quadratic programming.
 
     Write the problem as a YAML file (see models/), check it with check, and solve it with solve.
 

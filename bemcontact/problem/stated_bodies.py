@@ -123,6 +123,11 @@ class StatedBodies(SpecModel):
         first, second = self.bonded[contact] if contact in self.bonded else self.contacts[contact].between
         return _body_in(first), _body_in(second)
 
+    def touching_bodies(self, zone: str) -> tuple[str, str]:
+        """Names of the elastic body that has the edges of a zone, and of the one that it touches; '' for a surface."""
+        own = self.part_of(self.edges_of(zone)[0])
+        return own, next((name for name in self.sides_of(zone) if name != own), own) if zone in self.contacts else ""
+
     def part_of(self, edge: str) -> str:
         """Name of the body that has an edge; empty for the only body."""
         return edge.partition(SEPARATOR)[0] if self.bodies else ""

@@ -118,14 +118,15 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
     for bar in bars_of(record, "displacement"):
         place = bar["at"] and f", at {vector(bar['at'], units.length, scale=size)}"
         yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most{place or ''}"
-    force, error = total_force(record, units), size * sum(force_errors(record) or (0.0,))
-    moment = zero_if_negligible(record["resultant_moment"], pressed * size)
-    known = error / abs(moment) if moment and error else None
-    moment = with_unit(without_digits_beyond(moment, known), units.line_moment)
-    yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
-    forces = zone_forces(record, units)
-    for zone, written in forces.items() if len(forces) > 1 else ():
-        yield "Resultant", f"of {zone}: {written}"
+    forces, sides = zone_forces(record, units), record["sides"]
+    if not sides:
+        force, error = _force(record["resultant"], record, None, units), size * sum(force_errors(record) or (0.0,))
+        moment = zero_if_negligible(record["resultant_moment"], pressed * size)
+        known = error / abs(moment) if moment and error else None
+        moment = with_unit(without_digits_beyond(moment, known), units.line_moment)
+        yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
+    for zone, written in forces.items() if len(forces) > 1 or sides else ():
+        yield "Resultant", f"of {zone}{f' on {sides[zone][0]}' if sides else ''}: {written}"
     for j, name in enumerate(record["motion_names"]):
         if name.startswith(TURNS) and " of the tool " not in name and NEARLY not in name:
             yield "Rotation", f"{_in_sense(name, record, j).removeprefix(TURNS)}{_angle(record, j)}"
@@ -314,9 +315,15 @@ def zone_forces(record: JsonObject, units: Units) -> dict[str, str]:
     return {zone: _force(force, record, zone, units) for zone, force in record["forces"].items()}
 
 
-def total_force(record: JsonObject, units: Units) -> str:
-    """Write the force of all rigid surfaces on the body with its error."""
-    return _force(record["resultant"], record, None, units)
+def total_force(record: JsonObject, units: Units) -> tuple[str, str]:
+    """Name and write the force of all rigid surfaces on the body; of several bodies, the largest force of a contact.
+
+    Forces of contacts between several bodies act on different ones: their sum means nothing.
+    """
+    if not record["sides"]:
+        return "Force on the body", _force(record["resultant"], record, None, units)
+    zone = max(record["forces"], key=lambda name: float(np.hypot(*record["forces"][name])))
+    return f"Force of {zone} on {record['sides'][zone][0]}", _force(record["forces"][zone], record, zone, units)
 
 
 def _force(components: tuple[float, float], record: JsonObject, zone: str | None, units: Units) -> str:

@@ -169,7 +169,7 @@ def _contents(report: JsonObject) -> dict[str, Any]:
         "description": paragraphs(report["description"]),
         "facts": [*facts(answer, units)] if answer else [],
         "touching": [*contact_intervals(answer, units, short=True)] if answer else [],
-        "force": total_force(answer, units) if answer else "",
+        "force": total_force(answer, units) if answer else ("", ""),
         "scores": [*scores_in_words(level["scores"], level["references"], units)],
         "certificate": answer["certificate"]["words"] if answer else "There is no direct solution to certify.",
         "penalties": {item["label"]: _penalty(item, units) for item in contenders},
@@ -204,7 +204,8 @@ def _record(level: JsonObject) -> JsonObject | None:
     if answer is None:
         return None
     residuals = {**answer["residuals"], "force_balance": level["force_balance"]}
-    return {**compared["contact"], **answer, "residuals": residuals, "accuracy": level["accuracy"]}
+    of_level = {key: level[key] for key in ("accuracy", "sides")}
+    return {**compared["contact"], **answer, **of_level, "residuals": residuals}
 
 
 def _penalty(contender: JsonObject, units: Units) -> PenaltyWords | None:

@@ -41,7 +41,7 @@ from bemcontact.report.formatting import (
     zone_surfaces,
 )
 from bemcontact.report.page import picture, template
-from bemcontact.report.verdicts import BEYOND, NOT_LOOKED_AT, case_verdicts, overall, result_verdicts
+from bemcontact.report.verdicts import BEYOND, NORMALS, NOT_LOOKED_AT, case_verdicts, overall, result_verdicts
 from bemcontact.report.zones import by_case, zone_rows
 from bemcontact.version import __version__
 
@@ -101,7 +101,8 @@ def render(
         notes=[*_notes(cases)],
         infinite=any(result.accuracy.infinite for result in cases.values()),
         assessed=any(result.accuracy.met is not None for result in cases.values()),
-        not_looked_at=NOT_LOOKED_AT,
+        not_looked_at=NOT_LOOKED_AT + NORMALS if first.sides else NOT_LOOKED_AT,
+        body="body" if not first.sides else "first body of each contact",
         pictures=[_picture(name, svg, results, stress) for name, svg in pictures.items()],
         notes_beyond=any(BEYOND in note for result in cases.values() for note in result.notes),
         spec=spec,
@@ -129,7 +130,8 @@ def _forces(record: JsonObject, units: Units) -> Iterator[tuple[str, str, str]]:
     zones = {zone: float(np.hypot(*force)) for zone, force in record["forces"].items()}
     pressing = {zone: size for zone, size in zones.items() if zero_if_negligible(size, pressed_by(record))}
     if not 1 < len(pressing) <= MOST_FORCES:
-        yield "Force on the body", total_force(record, units), "of all surfaces"
+        remark = "the largest" if len(pressing) > 1 else ""
+        yield *total_force(record, units), remark if record["sides"] else "of all surfaces"
         return
     for zone, size in pressing.items():
         errors = force_errors(record, zone)
@@ -205,6 +207,7 @@ def _at(peak: StressPeak, units: Units, size: float) -> str:
 def _case(name: str, result: Result, units: Units) -> dict[str, Any]:
     """A row in the table of load cases."""
     record, verdicts = result.to_dict(), result_verdicts(result)
+    whose, force = total_force(record, units)
     return {
         "name": name,
         "equations": verdicts[0].word,
@@ -212,7 +215,7 @@ def _case(name: str, result: Result, units: Units) -> dict[str, Any]:
         "quality": overall(verdicts),
         "peak": peak_of(record, units) if record["intervals"] else "no contact",
         "place": peak_place(record, units) or NOTHING,
-        "force": total_force(record, units),
+        "force": f"{whose}: {force}" if record["sides"] else force,
     }
 
 

@@ -7,6 +7,8 @@ import pytest
 from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, problem, rigid, stated
 
 import bemcontact
+from bemcontact.report.facts import facts
+from bemcontact.report.result_page import render
 
 PRESSED = {"top": {"pressure": 5.0}}
 
@@ -292,3 +294,20 @@ def test_a_stress_operator_is_of_one_body():
     spec = problem(bodies, face={"between": ["up/bottom", "low/top"]}, accuracy=0.05)
     with pytest.raises(bemcontact.ProblemError, match="is of one body, and this problem has several"):
         bemcontact.stress_operator(spec, [[0.5, 0.5]])
+
+
+def test_forces_of_contacts_are_not_summed_over_bodies():
+    """A stack under a pressure of 1 on a width of 2: each contact carries 2, on the upper body, and no total is 4."""
+    bodies = {
+        "top": elastic(block((0, 2), (1, 2)), {"top": {"pressure": 1.0}}),
+        "middle": elastic(block((0, 2), (0, 1))),
+        "low": elastic(block((0, 2), (-1, 0)), HELD),
+    }
+    result = solved(bodies, 0.05, one=["top", "middle"], two=["middle", "low"])
+    assert result.sides == {"one": ("top", "middle"), "two": ("middle", "low")}
+    told = [value for name, value in facts(result.to_dict(), result.problem.units) if name == "Resultant"]
+    assert [value.partition(":")[0] for value in told] == ["of one on top", "of two on middle"]
+    assert all(": (0, 2.000" in value for value in told)
+    page = render(result, {}, None)
+    assert "of all surfaces" not in page
+    assert "the normals of the second body" in page

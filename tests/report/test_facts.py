@@ -104,7 +104,7 @@ def test_of_two_zones_one_of_which_is_infinite_the_other_has_its_peak():
     )
     bars = (bar("peak", None, None, note="infinite at a corner"), bar("peak", 12.5, 0.01, zone="wall"))
     record = {
-        **lists, "forces": {}, "peak": None, "resultant": (0.0, 0.0), "resultant_moment": 0.0,
+        **lists, "forces": {}, "sides": {}, "peak": None, "resultant": (0.0, 0.0), "resultant_moment": 0.0,
         "scales": {"displacement": 1.0}, "motion_names": (), "rigid_amplitudes": (), "rotations": (),
         "residuals": dict.fromkeys(("penetration", "tension", "complementarity", "equilibrium", "force_balance")),
         "accuracy": accuracy(*bars),
@@ -123,7 +123,7 @@ def facts_of_forces(
         "intervals": [{"zone": "foot", "start": [0.0, 0.0], "end": [9.0, 0.0], "arc": [0.0, 9.0]}] * any(forces),
         "run": [0] * len(forces), "arc_position": [float(place) for place in range(len(forces))],
         "tributary_lengths": forces, "pressure": [1.0] * len(forces), "normals": [[0.0, 1.0]] * len(forces),
-        "forces": {"foot": (0.0, total)}, "undetermined": (), "gap": [0.0] * len(forces),
+        "forces": {"foot": (0.0, total)}, "sides": {}, "undetermined": (), "gap": [0.0] * len(forces),
         "peak": None if infinite or not any(forces) else {"pressure": 1.0, "at": [0.0, 0.0]},
         "resultant": (1e-14 * total, total), "resultant_moment": 3.0 * total,
         "motion_names": ("rotation about (1, 2)", "rotation about (3, 4)", "translation along (0, 1)"),
