@@ -68,7 +68,7 @@ class Peak(Leaf):
 
 @dataclass(frozen=True, kw_only=True)
 class Resultant(WithHints):
-    """Force of the rigid surfaces on the body."""
+    """Force of the rigid surfaces on the body; of several bodies the sum over all contacts, which acts on no body."""
 
     _called: ClassVar[Words] = {
         "force": ("value", "x", "y", "forces", "total_force", "contact_force"),
@@ -95,7 +95,7 @@ class Footprint(WithHints):
     resultant: Resultant
     """Resultant of the contact pressure."""
     forces: dict[str, Pair]
-    """Force (x, y) of the rigid surface of each zone on the body, Σ w p n, per thickness [p L]."""
+    """Force (x, y) in each zone on the body, the first one of a contact of two, Σ w p n, per thickness [p L]."""
     moments: dict[str, float]
     """Moment of each of these forces about the origin, counterclockwise, per thickness [p L²]."""
 
@@ -104,11 +104,11 @@ class FootprintRecord(Record):
     """Where the body touches, and how hard."""
 
     resultant: Pair
-    """Force (x, y) of the rigid surfaces on the body, per thickness [p L]."""
+    """Force (x, y) of the rigid surfaces on the body, per thickness [p L]; of several bodies, as of `Resultant`."""
     resultant_moment: float
     """Its moment about the origin, counterclockwise, per thickness [p L²]."""
     forces: dict[str, Pair]
-    """Force (x, y) of the rigid surface of each zone on the body, per thickness [p L]."""
+    """Force (x, y) in each zone on the body, the first one of a contact of two, per thickness [p L]."""
     moments: dict[str, float]
     """Moment of each of these forces about the origin, counterclockwise, per thickness [p L²]."""
     intervals: tuple[ContactInterval, ...]

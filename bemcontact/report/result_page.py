@@ -201,7 +201,8 @@ def _stress(peak: StressPeak, units: Units) -> str:
 
 def _at(peak: StressPeak, units: Units, size: float) -> str:
     """Write the place of a stress; what is small beside its depth is zero."""
-    return f"at {vector(peak.point, units.length, scale=max(size, UNRESOLVED * peak.depth / NEGLIGIBLE))}"
+    place = vector(peak.point, units.length, scale=max(size, UNRESOLVED * peak.depth / NEGLIGIBLE))
+    return f"at {place}{f' in {peak.body}' if peak.body and not peak.edge else ''}"
 
 
 def _case(name: str, result: Result, units: Units) -> dict[str, Any]:

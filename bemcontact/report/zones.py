@@ -34,7 +34,7 @@ POINT_COLUMNS = ("case", "zone", "x", "y", "normal_x", "normal_y", "arc", "press
 """Columns of points.csv."""
 STRESS_COLUMNS = ("case", "edge", "x", "y", "arc", "hoop", "pressure", "shear", "von_mises")
 """Columns of stress.csv."""
-LARGEST_COLUMNS = ("case", "stress", "of", "value", "error", "x", "y", "depth", "edge", "none")
+LARGEST_COLUMNS = ("case", "stress", "of", "value", "error", "x", "y", "depth", "body", "edge", "none")
 """Columns of largest_stresses.csv."""
 
 
@@ -191,12 +191,12 @@ def _largest_lines(case: str, result: Result) -> Iterator[list[Any]]:
     peaks += [("von_mises", "inside", largest.inside, INSIDE), ("von_mises", "boundary", largest.boundary, ON_BOUNDARY)]
     for stress, of, peak, label in peaks:
         if peak is None:
-            yield [case, stress, of, *[""] * 6, str(largest.missing[label])]
+            yield [case, stress, of, *[""] * 7, str(largest.missing[label])]
         else:
             error = "" if peak.bar is None else peak.bar * peak.value
-            yield [case, stress, of, peak.value, error, *peak.point, peak.depth, peak.edge or "", ""]
+            yield [case, stress, of, peak.value, error, *peak.point, peak.depth, peak.body, peak.edge or "", ""]
     for x, y in largest.singular.tolist():
-        yield [case, "von_mises", "infinite", "", "", x, y, "", "", ""]
+        yield [case, "von_mises", "infinite", "", "", x, y, *[""] * 4]
 
 
 def tables_of(results: Result | CaseResults) -> Mapping[str, str]:

@@ -1,5 +1,7 @@
 """Several bodies from spec to result: what the joined equations must give, whatever the bodies are."""
 
+import csv
+import io
 import math
 
 import numpy as np
@@ -9,6 +11,7 @@ from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, proble
 import bemcontact
 from bemcontact.report.facts import facts
 from bemcontact.report.result_page import render
+from bemcontact.report.zones import largest_stresses_csv
 
 PRESSED = {"top": {"pressure": 5.0}}
 
@@ -311,3 +314,7 @@ def test_forces_of_contacts_are_not_summed_over_bodies():
     page = render(result, {}, None)
     assert "of all surfaces" not in page
     assert "the normals of the second body" in page
+    rows = list(csv.DictReader(io.StringIO(largest_stresses_csv(result))))
+    assert {row["body"] for row in rows if row["value"]} <= {"top", "middle", "low"}
+    inside = result.largest_stresses().inside
+    assert inside is None or f" in {inside.body}" in page
