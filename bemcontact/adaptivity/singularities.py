@@ -203,8 +203,7 @@ def _slope(solved: Solved, kink: float, part: int) -> float:
 
     Johnson, "Contact Mechanics" (1985), section 5.2: p = (E*/π) cot α arcosh(a/x) under a blunt wedge.
     """
-    material = solved.body.problem.parts[part].material
-    return 2 * material.shear_modulus / (1 - material.effective_poisson_ratio) * kink / (2 * np.pi)
+    return solved.body.problem.parts[part].material.contact_modulus * kink / (2 * np.pi)
 
 
 ElasticWedge = tuple[float, float, tuple[Face, Face], float]

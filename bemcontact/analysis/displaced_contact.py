@@ -53,7 +53,7 @@ def displaced(
         other = ~ridge & (np.sum(there.normals * face, axis=-1) < SAME_FACE)
         beyond = there.gap / np.where(ridge, along, 1.0) - linear[own]
         grooved = other & (beyond < 0) & isinstance(gaps.surfaces[zone], Polyline)
-        found.motion[own] -= gaps.tool_motion(zone, at[own])
+        found.motion[own] -= gaps.tool_motion(zone, at[own], paired=True)
         turned = np.where(ridge[:, None], face, there.normals)
         places = at[own] + displacement[own]
         turned = turned + gaps.turn_of_normals(zone, places - gaps.tool_motion(zone, places), turned)

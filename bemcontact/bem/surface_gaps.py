@@ -172,7 +172,7 @@ class SurfaceGaps:
         faces = self.surfaces[zone].faces(flat, inward, np.zeros(len(flat)))
         gap, normals, lies = (part[:, 0].reshape(at.points.shape[:-1] + part.shape[2:]) for part in faces)
         gap[:, NODES], normals[:, NODES], lies[:, NODES] = (part[elements] for part in held)
-        moved = self._displacement[elements] - self.tool_motion(zone, at.points)
+        moved = self._displacement[elements] - self.tool_motion(zone, at.points, paired=True)
         return Faces(gap + np.sum(normals * moved, axis=-1), normals, lies)
 
     def exact(self, zone: str, moved: Array) -> Closest:
@@ -186,11 +186,14 @@ class SurfaceGaps:
         gap, normals = (np.concatenate(part) for part in zip(*parts, strict=True))
         return Closest(gap.reshape(points.shape[:-1]), normals.reshape(points.shape))
 
-    def tool_motion(self, zone: str, points: Array) -> Array:
-        """Displacement (..., 2) [L] of a surface at points (..., 2): that of its tool, or of the other elastic body."""
+    def tool_motion(self, zone: str, points: Array, *, paired: bool = False) -> Array:
+        """Displacement (..., 2) [L] of a surface at points (..., 2): that of its tool, or of the other elastic body.
+
+        Of the latter at the nearest places, or where they form pairs with the points.
+        """
         surface = self.surfaces[zone]
         if isinstance(surface, BodySurface) and surface.elastic:
-            feet = surface.feet(points.reshape(-1, 2))
+            feet = (surface.pairs if paired else surface.feet)(points.reshape(-1, 2))
             element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)
             values = np.einsum("ki,kix->kx", reference_element.values(xi), self.state.displacement[element])
             return values.reshape(points.shape)

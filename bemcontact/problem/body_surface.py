@@ -9,7 +9,9 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.problem.boundary import size_of_edges
 from bemcontact.problem.curves import Curve, Edge, cross
+from bemcontact.problem.edge_places import EdgePlaces, meeting, nearest_on
 from bemcontact.problem.rigid_surface import RigidSurface, Shape
 from bemcontact.problem.surface_lines import Closest, Faces, between_normals
 
@@ -21,6 +23,12 @@ ROUND_OFF = 1e-9
 """Difference of two fractions of an edge that is none: places on the normal at an end may be on either side of it."""
 CORNER = 1e-6
 """Sine of the angle between two edges from which their joint is a corner."""
+FAR = 0.2
+"""Distance of a pair over the size of its surface from which its normal is that of the surface alone."""
+BESIDE_CORNER = 0.1
+"""Distance from a corner of the first side over the length of its edges up to which its normals count less."""
+TURNS = 3
+"""Times that a pair is found again with the normal of the surface where it is: gaps are short beside radii."""
 
 
 class Feet(NamedTuple):
@@ -50,6 +58,10 @@ class Feet(NamedTuple):
 class BodySurface:
     """Some or all edges of a body, as the surface that another body touches.
 
+    Between two elastic bodies, gap and pressure count along a common normal. Where the bodies meet, both are deformed:
+    each turns its boundary in proportion to its compliance. So the normal that they come to have is between those of
+    both, nearer to that of the stiffer one. It stays the same if the sides are exchanged.
+
     Parameters
     ----------
     body : its name
@@ -57,6 +69,8 @@ class BodySurface:
     edges : that may be touched, with their names in the problem
     loops : all loops of the body
     offset : what is added to the gap as drawn [L]
+    share : part that the first side has in common normals, its modulus E / (1 - ν²) over the sum of both
+    first : edges of the first side where it has such a part
     nearest : fractions of curves where they are nearest to it, as far as they were looked for
     """
 
@@ -66,6 +80,8 @@ class BodySurface:
     edges: tuple[Edge, ...]
     loops: tuple[tuple[Edge, ...], ...]
     offset: float = 0.0
+    share: float = 0.0
+    first: tuple[Edge, ...] = ()
     nearest: dict[Curve, tuple[float, ...]] = field(default_factory=dict)
 
     @cached_property
@@ -85,24 +101,70 @@ class BodySurface:
     def feet(self, points: Array) -> Feet:
         """Places that are nearest to points (k, 2) [L]."""
         points = np.asarray(points, float)
-        fractions = np.array([edge.curve.nearest(points) for edge in self.edges])
-        places = np.array([edge.points(at) for edge, at in zip(self.edges, fractions, strict=True)])
-        away = np.hypot(*np.moveaxis(points - places, 2, 0))
-        number, rows = away.argmin(axis=0), np.arange(len(points))
-        fraction, foot = fractions[number, rows], places[number, rows]
-        normals = np.empty_like(foot)
-        for i in sorted({*number.tolist()}):
-            normals[number == i] = self.edges[i].normals(fraction[number == i])
+        number, fraction, foot, normals = nearest_on(self.edges, points)
         offset, (sums, corners) = points - foot, self._ends
+        away = np.hypot(*offset.T)
         corner, at_corner = np.zeros((2, len(points)), bool)
         for end in (0, 1):
             at_corner |= (abs(fraction - end) <= ROUND_OFF) & corners[number, end]
             at = np.flatnonzero((fraction == end) & corners[number, end])
-            tilted = abs(cross(offset[at], normals[at])) > AT_END * away[number[at], at]
-            at = at[tilted & (away[number[at], at] > 0)]
+            tilted = abs(cross(offset[at], normals[at])) > AT_END * away[at]
+            at = at[tilted & (away[at] > 0)]
             side = np.where(np.sum(offset[at] * sums[number[at], end], axis=1) < 0, -1.0, 1.0)
-            normals[at], corner[at] = side[:, None] * offset[at] / away[number[at], at, None], True
+            normals[at], corner[at] = side[:, None] * offset[at] / away[at, None], True
         return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner, at_corner)
+
+    def pairs(self, points: Array) -> Feet:
+        """Places that form pairs with points (k, 2) [L] of the first side, and the common normals there.
+
+        Points are on the common normals of their places, so that forces of pairs have no moment. They are the nearest
+        places of a rigid body, and far from contact.
+        """
+        feet = self.feet(points)
+        if self.share == 0:
+            return feet
+        points = np.asarray(points, float)
+        own = -nearest_on(self.first, points).normals
+        part = self.share * self._nearness(points, own, feet)[:, None]
+        at = tilted = np.flatnonzero(part)
+        place, along = EdgePlaces(feet.edge[at], feet.fraction[at], feet.points[at], feet.normals[at]), own[at]
+        for _ in range(TURNS):
+            along = part[at] * own[at] + (1 - part[at]) * place.normals
+            along /= np.hypot(*along.T)[:, None]
+            place, met = meeting(self.edges, place, points[at], along)
+            at, along = at[met], along[met]
+        found = Feet(*(item.copy() for item in feet))
+        found.corner[tilted], found.corner[at] = True, False
+        found.edge[at], found.fraction[at], found.points[at], found.normals[at] = *place[:3], along
+        found.gap[at] = np.sum((points[at] - place.points) * along, axis=1)
+        return found
+
+    def _nearness(self, points: Array, own: Array, feet: Feet) -> Array:
+        """Part (k,) of its share with which the first side counts at points (k, 2) with normals (k, 2) into the body.
+
+        It is one where the boundaries are near and parallel, as in contact, and zero where they cannot come to touch:
+        there pairs are the nearest places, which exist in any case. At a corner of the first side, which has two
+        normals, it is zero too.
+        """
+        toward = np.sum(own * feet.normals, axis=1)
+        apart = cross(own, feet.normals) ** 2 + (feet.gap / (FAR * size_of_edges(self.edges))) ** 2
+        part = np.where((toward > 0) & ~feet.corner, np.maximum(1 - apart**2, 0.0) ** 4, 0.0)
+        for corner, length in self._corners_of_first:
+            away = np.minimum(np.hypot(*(points - corner).T) / (BESIDE_CORNER * length), 1.0)
+            part *= 1 - (1 - away**2) ** 4
+        return part
+
+    @cached_property
+    def _corners_of_first(self) -> list[tuple[Array, float]]:
+        """Corners (2,) [L] between edges of the first side, each with the length of the shorter one [L]."""
+        ends = [(edge.end, edge.normals(np.ones(1))) for edge in self.first]
+        starts = [(edge.start, edge.normals(np.zeros(1))) for edge in self.first]
+        return [
+            (np.array(end), min(before.length, after.length))
+            for before, (end, normal) in zip(self.first, ends, strict=True)
+            for after, (start, other) in zip(self.first, starts, strict=True)
+            if end == start and abs(cross(normal, other)[0]) > CORNER
+        ]
 
     def beside(self, feet: Feet) -> Array:
         """Normals (k, 2, 2) out of the body on both sides of places that are corners, of others twice their own."""
@@ -126,7 +188,8 @@ class BodySurface:
         (k,) [L]. A convex corner presses on a smooth boundary along its normal, as far as that is between the normals
         of the edges.
         """
-        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in self.closest(points))
+        pairs = self.pairs(points)
+        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in (pairs.gap + self.offset, pairs.normals))
         turns = abs(cross(inward[:, 0], inward[:, 1])) > CORNER
         near = ON_CORNER * max(np.ptp(part) for part in points.T)
         for joint, own in self.joints:

@@ -47,3 +47,8 @@ class Material(SpecModel):
         """The ν of the plane-strain formulas: ν itself in plane strain, ν / (1 + ν) in plane stress."""
         nu = self.poisson_ratio
         return nu if self.state == "plane_strain" else nu / (1 + nu)
+
+    @property
+    def contact_modulus(self) -> float:
+        """E* [p] of the body on a rigid one: E / (1 - ν²) in plane strain, E in plane stress, [Joh85] 4.2."""
+        return 2 * self.shear_modulus / (1 - self.effective_poisson_ratio)

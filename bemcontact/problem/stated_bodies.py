@@ -1,6 +1,7 @@
 """Bodies, conditions and contacts as a problem states them, and what follows for all elastic bodies together."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Self
 
 import numpy as np
@@ -209,6 +210,10 @@ class StatedBodies(SpecModel):
         if first == (own := _body_in(first),):
             lines = [edge for loop in named_loops(self.boundary_of(own), own) for edge in loop]
             edges = tuple(name for name in edges_that_see(lines, surface) if name not in self._held_edges())
+        if elastic:
+            moduli = [self._material(_body_in(side)).contact_modulus for side in (first, second)]
+            own = tuple(edge for edge in self.edges if edge.name in edges)
+            surface = replace(surface, share=moduli[0] / sum(moduli), first=own)
         return BodyZone(edges=edges, surface=surface)
 
     def opposite_edges(self, contact: str) -> tuple[str, ...]:

@@ -9,11 +9,6 @@ from bemcontact.arrays import Array
 from bemcontact.problem.material import Material
 
 
-def contact_modulus(material: Material) -> float:
-    """E* [p] of an elastic body on a rigid one: E / (1 - ν²) in plane strain, E in plane stress, [Joh85] 4.2."""
-    return 2 * material.shear_modulus / (1 - material.effective_poisson_ratio)
-
-
 @dataclass(frozen=True, kw_only=True)
 class HertzContact:
     """Two cylinders pressed together: p = p0 sqrt(1 - x²/b²) with b² = 4 P R / (π E*), [Joh85] (4.43) to (4.45).

@@ -28,7 +28,6 @@ from bemcontact.reference.closed_forms import (
     HertzContact,
     PunchOnHalfPlane,
     ShrunkRing,
-    contact_modulus,
 )
 from bemcontact.reference.positions import Frame, coordinates, in_zone, reach, spacing
 from bemcontact.serialization import Flags, Internal, Leaf, Pair
@@ -190,7 +189,7 @@ def _hertz(silent: Expected, stated: Hertz, problem: Problem, contact: Condensed
     """Hertz, in range up to b/R = 0.1; near the end of contact, a node spacing at least, it is not compared."""
     surface = 0.0 if stated.surface_radius is None else 1 / stated.surface_radius
     form = HertzContact(
-        load=stated.load, curvature=1 / stated.radius + surface, modulus=contact_modulus(problem.material)
+        load=stated.load, curvature=1 / stated.radius + surface, modulus=problem.material.contact_modulus
     )
     frame = Frame.at(contact, stated.zone, stated.center)
     near = np.abs(frame.heights(contact.points)) < abs(stated.radius)
@@ -261,7 +260,7 @@ def _crack(silent: Expected, stated: Crack, problem: Problem, contact: Condensed
         half_length=stated.half_length,
         half_height=stated.half_height,
         compression=stated.compression,
-        modulus=contact_modulus(problem.material),
+        modulus=problem.material.contact_modulus,
         slit=stated.opening == "slit",
     )
     frame = Frame.at(contact, stated.zone, stated.center)
@@ -291,7 +290,7 @@ def _propped_beam(silent: Expected, stated: ProppedBeam, problem: Problem) -> Ex
         span=stated.span,
         height=stated.height,
         gap=stated.gap,
-        modulus=contact_modulus(problem.material),
+        modulus=problem.material.contact_modulus,
         shear_modulus=problem.material.shear_modulus,
     )
     if stated.support == "prop" and not form.prop:
