@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.pairing import HALF, OppositePart
@@ -153,6 +154,8 @@ def _matched(
         other = ends[item.part.edge]
         first, last = (int(np.abs(other - end).argmin()) for end in item.part[1:3])
         places = _snapped(feet(item, edges[item.part.edge], other[first : last + 1]))
+        if (np.diff(places) >= 0).any():
+            raise ProblemError(_crossing(item))
         covered.append((places[::-1], item, last))
     keep = np.ones(len(own), bool)
     for places, _, _ in covered:
@@ -187,6 +190,15 @@ def _matched(
             (item.contact, Facing(name, other * refine + refine - 1 - i, item.onto, number + i)) for i in range(refine)
         ]
     return every, np.concatenate(pieces), pairs
+
+
+def _crossing(item: Matched) -> Issue:
+    """Issue of a contact with pairs that cross each other, because the edges are far apart there."""
+    message = (
+        f"'{item.part.edge}' is so far from '{item.onto}' that pairs of their points cross each other; name the edges "
+        "that come to touch, or cut the edge where it is far away"
+    )
+    return Issue(path=("contacts", item.contact, "between"), message=message)
 
 
 def _snapped(fractions: Array) -> Array:

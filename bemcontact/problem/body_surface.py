@@ -9,9 +9,8 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
-from bemcontact.problem.boundary import size_of_edges
 from bemcontact.problem.curves import Curve, Edge, cross
-from bemcontact.problem.edge_places import EdgePlaces, meeting, nearest_on
+from bemcontact.problem.edge_places import EdgePlaces, curvatures, nearest_on, paired_on
 from bemcontact.problem.rigid_surface import RigidSurface, Shape
 from bemcontact.problem.surface_lines import Closest, Faces, between_normals
 
@@ -23,12 +22,10 @@ ROUND_OFF = 1e-9
 """Difference of two fractions of an edge that is none: places on the normal at an end may be on either side of it."""
 CORNER = 1e-6
 """Sine of the angle between two edges from which their joint is a corner."""
-FAR = 0.2
-"""Distance of a pair over the size of its surface from which its normal is that of the surface alone."""
-BESIDE_CORNER = 0.1
-"""Distance from a corner of the first side over the length of its edges up to which its normals count less."""
-TURNS = 3
-"""Times that a pair is found again with the normal of the surface where it is: gaps are short beside radii."""
+STEEPEST = 0.5
+"""Cosine of the angle between two boundaries from which they may form pairs: small displacements close no wider one."""
+WIDEST = 2.0
+"""Distance of a pair from the nearest place, over that of the point, up to which it is taken: others are elsewhere."""
 
 
 class Feet(NamedTuple):
@@ -117,42 +114,36 @@ class BodySurface:
     def pairs(self, points: Array) -> Feet:
         """Places that form pairs with points (k, 2) [L] of the first side, and the common normals there.
 
-        Points are on the common normals of their places, so that forces of pairs have no moment. They are the nearest
-        places of a rigid body, and far from contact.
+        Points are on the common normals of their pairs, so that the forces on both bodies have no moment together.
+        Pairs of a rigid body are the nearest places. A point that has no pair has the nearest place, as a corner.
         """
         feet = self.feet(points)
         if self.share == 0:
             return feet
         points = np.asarray(points, float)
-        own = -nearest_on(self.first, points).normals
-        part = self.share * self._nearness(points, own, feet)[:, None]
-        at = tilted = np.flatnonzero(part)
-        place, along = EdgePlaces(feet.edge[at], feet.fraction[at], feet.points[at], feet.normals[at]), own[at]
-        for _ in range(TURNS):
-            along = part[at] * own[at] + (1 - part[at]) * place.normals
-            along /= np.hypot(*along.T)[:, None]
-            place, met = meeting(self.edges, place, points[at], along)
-            at, along = at[met], along[met]
-        found = Feet(*(item.copy() for item in feet))
-        found.corner[tilted], found.corner[at] = True, False
-        found.edge[at], found.fraction[at], found.points[at], found.normals[at] = *place[:3], along
-        found.gap[at] = np.sum((points[at] - place.points) * along, axis=1)
+        first, share = nearest_on(self.first, points), self._share_at(points)
+        at = np.flatnonzero(np.sum(first.normals * feet.normals, axis=1) < 0)
+        nearest = EdgePlaces(*(item[at] for item in feet[:3]), feet.normals[at])
+        places, normals, paired = paired_on(self.edges, nearest, points[at], -first.normals[at], share[at])
+        at = at[paired]
+        gap, beside = np.sum((points[at] - places.points) * normals, axis=1), places.points - feet.points[at]
+        near = np.hypot(*beside.T) <= WIDEST * (abs(feet.gap[at]) + ROUND_OFF * max(edge.length for edge in self.edges))
+        near &= np.sum(first.normals[at] * places.normals, axis=1) < -STEEPEST
+        near &= 1 + share[at] * curvatures(self.first, first)[at] * gap > 0  # or common normals cross on the way
+        near &= 1 + (1 - share[at]) * curvatures(self.edges, places) * gap > 0
+        found, at = Feet(*(item.copy() for item in feet)), at[near]
+        found.corner[:], found.corner[at] = True, False
+        found.edge[at], found.fraction[at], found.points[at] = (item[near] for item in places[:3])
+        found.normals[at], found.gap[at] = normals[near], gap[near]
         return found
 
-    def _nearness(self, points: Array, own: Array, feet: Feet) -> Array:
-        """Part (k,) of its share with which the first side counts at points (k, 2) with normals (k, 2) into the body.
-
-        It is one where the boundaries are near and parallel, as in contact, and zero where they cannot come to touch:
-        there pairs are the nearest places, which exist in any case. At a corner of the first side, which has two
-        normals, it is zero too.
-        """
-        toward = np.sum(own * feet.normals, axis=1)
-        apart = cross(own, feet.normals) ** 2 + (feet.gap / (FAR * size_of_edges(self.edges))) ** 2
-        part = np.where((toward > 0) & ~feet.corner, np.maximum(1 - apart**2, 0.0) ** 4, 0.0)
+    def _share_at(self, points: Array) -> Array:
+        """Share (k,) at points (k, 2): none at corners of the first side, which have two normals, and little beside."""
+        share = np.full(len(points), self.share)
         for corner, length in self._corners_of_first:
-            away = np.minimum(np.hypot(*(points - corner).T) / (BESIDE_CORNER * length), 1.0)
-            part *= 1 - (1 - away**2) ** 4
-        return part
+            away = np.minimum(np.hypot(*(points - corner).T) / length, 1.0)
+            share *= 1 - (1 - away**2) ** 4
+        return share
 
     @cached_property
     def _corners_of_first(self) -> list[tuple[Array, float]]:

@@ -1,4 +1,4 @@
-"""Places on edges: those nearest to points, and those where lines through points meet edges."""
+"""Places on edges: those nearest to points, and those that share a normal with points of another boundary."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -9,11 +9,15 @@ from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problem.curves import Edge, cross
 
 STEPS = 30
-"""Largest number of Newton's steps to the place where a line meets an edge."""
-SETTLED = 1e-15
-"""Change of the fraction of an edge that is round-off."""
+"""Largest number of Newton's steps to a pair."""
+SETTLED = 1e-9
+"""Change of the fraction of an edge by one of them after which the next one is round-off."""
+LARGEST_TURN = 0.3
+"""Largest turn of the normal of an edge by one step [rad]."""
+AHEAD = 1e-5
+"""Fraction of an edge over which the turn of its normal is measured."""
 MET = 1e-12
-"""Distance between a line and a place, over the length of the edge or the largest coordinate, that is round-off."""
+"""Distance of a point from the normal of its pair, over the length of the edge or a coordinate, that is round-off."""
 
 
 class EdgePlaces(NamedTuple):
@@ -50,10 +54,28 @@ def nearest_on(edges: Sequence[Edge], points: Array) -> EdgePlaces:
     return places_at(edges, number, fractions[number, np.arange(len(points))])
 
 
-def meeting(edges: Sequence[Edge], start: EdgePlaces, points: Array, along: Array) -> tuple[EdgePlaces, BoolArray]:
-    """Places where lines through points (k, 2) with unit directions (k, 2) meet edges; which lines (k,) meet one.
+def curvatures(edges: Sequence[Edge], places: EdgePlaces) -> Array:
+    """Curvature (k,) [1/L] of edges at places, positive where the body is convex."""
+    found = np.empty(len(places.edge))
+    for i in sorted({*places.edge.tolist()}):
+        on, curve = places.edge == i, edges[i].curve
+        at, ahead = places.fraction[on], np.where(places.fraction[on] > 0.5, -AHEAD, AHEAD)
+        found[on] = (curve.tangent_angle(at + ahead) - curve.tangent_angle(at)) / (ahead * curve.length)
+    return found
 
-    The search begins at a place near each line. A line that misses its edge is looked for on the others.
+
+def paired_on(
+    edges: Sequence[Edge], start: EdgePlaces, points: Array, own: Array, share: Array
+) -> tuple[EdgePlaces, Array, BoolArray]:
+    """Places that form pairs with points (k, 2) [L]: each point is on the common normal of both boundaries there.
+
+    The common normal is the mean of the normal `own` (k, 2) into the body of the point, with the weight `share` (k,),
+    and of that of the place, with the rest. The search begins at a place near the pair. Where no place on its edge
+    forms one, the others are looked at.
+
+    Returns
+    -------
+    the places (j,), the common normals (j, 2), and which points (k,) have a pair
     """
     edge, fraction, met = start.edge.copy(), start.fraction.copy(), np.zeros(len(points), bool)
     for other in (None, *range(len(edges))):
@@ -62,20 +84,34 @@ def meeting(edges: Sequence[Edge], start: EdgePlaces, points: Array, along: Arra
             edge[rows], fraction[rows] = other, edges[other].curve.nearest(start.points[rows])
         for i in sorted({*edge[rows].tolist()}):
             on = rows[edge[rows] == i]
-            fraction[on], met[on] = _on_edge(edges[i], fraction[on], points[on], along[on])
+            fraction[on], met[on] = _on_edge(edges[i], fraction[on], points[on], own[on], share[on])
     found = places_at(edges, edge[met], fraction[met])
-    return found, met
+    return found, _common(own[met], found.normals, share[met]), met
 
 
-def _on_edge(edge: Edge, fraction: Array, points: Array, along: Array) -> tuple[Array, BoolArray]:
-    """Fractions (k,) of an edge where lines meet it, by Newton's method, and whether they do."""
+def _common(own: Array, other: Array, share: Array) -> Array:
+    """Common unit normals (k, 2) of both; of opposite ones, which form no pair, the first."""
+    mean = share[:, None] * own + (1 - share[:, None]) * other
+    size = np.hypot(*mean.T)[:, None]
+    return np.where(size > 0, mean / np.where(size > 0, size, 1.0), own)
+
+
+def _on_edge(edge: Edge, fraction: Array, points: Array, own: Array, share: Array) -> tuple[Array, BoolArray]:
+    """Fractions (k,) of pairs on an edge by Newton's method, and which of them are pairs."""
+    fraction, left = fraction.copy(), np.arange(len(points))
     for _ in range(STEPS):
-        beside = cross(along, points - edge.points(fraction))
-        rate = cross(along, edge.directions(fraction)) * edge.length
-        moved = fraction + beside / np.where(rate == 0, np.inf, rate)
-        moved = moved % 1.0 if edge.start == edge.end else np.clip(moved, 0.0, 1.0)
-        done, fraction = np.all(abs(moved - fraction) <= SETTLED), moved
-        if done:
+        at, ahead = fraction[left], np.where(fraction[left] > 0.5, -AHEAD, AHEAD)
+        offset, other, turned = points[left] - edge.points(at), edge.normals(at), edge.normals(at + ahead)
+        common = _common(own[left], other, share[left])
+        turn = cross(common, _common(own[left], turned, share[left])) / ahead
+        rate = cross(common, edge.directions(at)) * edge.length + turn * np.sum(common * offset, axis=1)
+        most = LARGEST_TURN * AHEAD / np.maximum(abs(cross(other, turned)), LARGEST_TURN * AHEAD)
+        step = np.clip(cross(common, offset) / np.where(rate == 0, np.inf, rate), -most, most)
+        moved = (at + step) % 1.0 if edge.start == edge.end else np.clip(at + step, 0.0, 1.0)
+        fraction[left] = moved
+        left = left[abs(moved - at) > SETTLED]
+        if not len(left):
             break
-    beside = cross(along, points - edge.points(fraction))
-    return fraction, abs(beside) <= MET * max(edge.length, abs(points).max(initial=0.0))
+    offset = points - edge.points(fraction)
+    off = cross(_common(own, edge.normals(fraction), share), offset)
+    return fraction, abs(off) <= MET * max(edge.length, abs(points).max(initial=0.0))
