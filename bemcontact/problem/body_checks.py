@@ -10,7 +10,6 @@ from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.boundary import size_of_edges
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.contact_zone import RigidTool
-from bemcontact.problem.pairing import blunt_corner
 from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.stated_bodies import StatedBodies
 from bemcontact.problem.validation import KeyIssue
@@ -253,14 +252,6 @@ def opposite_issues(problem: StatedBodies) -> Iterator[Issue]:
                 continue
             for part in parts:
                 follows.setdefault(surface.edges[part.onto].name, set()).add(part.edge)
-            if (corner := blunt_corner([*map(problem.edge, edges)], surface, problem.reach_of(name))) is not None:
-                x, y = corner.tolist()
-                message = (
-                    f"the corner of '{surface.body}' at ({x:.5g}, {y:.5g}) is nearest to a part of the other side, "
-                    "across a gap: pairs of contact points need closest points of their own; exchange the two sides, "
-                    "round the corner, or draw the bodies where the corner touches"
-                )
-                yield Issue(path=path, message=message)
     if circle := _circle(follows):
         names = ", ".join(f"'{name}'" for name in circle)
         message = f"the meshes of {names} would follow each other in a circle; exchange the sides of one contact"

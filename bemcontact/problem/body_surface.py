@@ -10,7 +10,14 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problem.curves import Curve, Edge, cross
-from bemcontact.problem.edge_places import EdgePlaces, curvatures, nearest_on, paired_on
+from bemcontact.problem.edge_places import (
+    EdgePlaces,
+    NormalWeight,
+    bent_joints,
+    curvatures,
+    nearest_on,
+    paired_on,
+)
 from bemcontact.problem.rigid_surface import RigidSurface, Shape
 from bemcontact.problem.surface_lines import Closest, Faces, between_normals
 
@@ -22,8 +29,6 @@ ROUND_OFF = 1e-9
 """Difference of two fractions of an edge that is none: places on the normal at an end may be on either side of it."""
 CORNER = 1e-6
 """Sine of the angle between two edges from which their joint is a corner."""
-STEEPEST = 0.5
-"""Cosine of the angle between two boundaries from which they may form pairs: small displacements close no wider one."""
 WIDEST = 2.0
 """Distance of a pair from the nearest place, over that of the point, up to which it is taken: others are elsewhere."""
 
@@ -121,41 +126,29 @@ class BodySurface:
         if self.share == 0:
             return feet
         points = np.asarray(points, float)
-        first, share = nearest_on(self.first, points), self._share_at(points)
+        first = nearest_on(self.first, points)
         at = np.flatnonzero(np.sum(first.normals * feet.normals, axis=1) < 0)
         nearest = EdgePlaces(*(item[at] for item in feet[:3]), feet.normals[at])
-        places, normals, paired = paired_on(self.edges, nearest, points[at], -first.normals[at], share[at])
+        places, normals, paired = paired_on(self.edges, nearest, points[at], -first.normals[at], self._weights)
         at = at[paired]
         gap, beside = np.sum((points[at] - places.points) * normals, axis=1), places.points - feet.points[at]
         near = np.hypot(*beside.T) <= WIDEST * (abs(feet.gap[at]) + ROUND_OFF * max(edge.length for edge in self.edges))
-        near &= np.sum(first.normals[at] * places.normals, axis=1) < -STEEPEST
-        near &= 1 + share[at] * curvatures(self.first, first)[at] * gap > 0  # or common normals cross on the way
-        near &= 1 + (1 - share[at]) * curvatures(self.edges, places) * gap > 0
+        own, other = curvatures(self.first, first)[at], curvatures(self.edges, places)
+        # otherwise common normals cross on the way
+        near &= (1 + self.share * own * gap > 0) & (1 + (1 - self.share) * other * gap > 0)
         found, at = Feet(*(item.copy() for item in feet)), at[near]
         found.corner[:], found.corner[at] = True, False
         found.edge[at], found.fraction[at], found.points[at] = (item[near] for item in places[:3])
         found.normals[at], found.gap[at] = normals[near], gap[near]
         return found
 
-    def _share_at(self, points: Array) -> Array:
-        """Share (k,) at points (k, 2): none at corners of the first side, which have two normals, and little beside."""
-        share = np.full(len(points), self.share)
-        for corner, length in self._corners_of_first:
-            away = np.minimum(np.hypot(*(points - corner).T) / length, 1.0)
-            share *= 1 - (1 - away**2) ** 4
-        return share
-
     @cached_property
-    def _corners_of_first(self) -> list[tuple[Array, float]]:
-        """Corners (2,) [L] between edges of the first side, each with the length of the shorter one [L]."""
-        ends = [(edge.end, edge.normals(np.ones(1))) for edge in self.first]
-        starts = [(edge.start, edge.normals(np.zeros(1))) for edge in self.first]
-        return [
-            (np.array(end), min(before.length, after.length))
-            for before, (end, normal) in zip(self.first, ends, strict=True)
-            for after, (start, other) in zip(self.first, starts, strict=True)
-            if end == start and abs(cross(normal, other)[0]) > CORNER
-        ]
+    def _weights(self) -> tuple[NormalWeight, NormalWeight]:
+        """Weights of the normals of both sides in common ones."""
+        return (
+            NormalWeight(self.share, bent_joints(self.first, self.edges)),
+            NormalWeight(1 - self.share, bent_joints(self.edges, self.first)),
+        )
 
     def beside(self, feet: Feet) -> Array:
         """Normals (k, 2, 2) out of the body on both sides of places that are corners, of others twice their own."""

@@ -8,6 +8,10 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problem.curves import Edge, cross
 
+STEEPEST = 0.5
+"""Cosine of the angle between two boundaries from which they may form pairs: small displacements close no wider one."""
+BENT = 1e-6
+"""Sine of the angle between two edges from which their joint is a corner."""
 STEPS = 30
 """Largest number of Newton's steps to a pair."""
 SETTLED = 1e-9
@@ -64,46 +68,80 @@ def curvatures(edges: Sequence[Edge], places: EdgePlaces) -> Array:
     return found
 
 
+class NormalWeight(NamedTuple):
+    """Weight of the normals of a boundary in common ones: none at its corners, where it has two, and little beside.
+
+    Parameters
+    ----------
+    most : the largest weight
+    corners : (j, 3) x, y of corners [L], and the distance [L] from which they do not matter
+    """
+
+    most: float
+    corners: Array
+
+    def at(self, points: Array) -> Array:
+        """Weight (k,) at points (k, 2) [L]."""
+        away = np.hypot(*np.moveaxis(points[:, None] - self.corners[:, :2], 2, 0)) / self.corners[:, 2]
+        return self.most * np.prod(1 - (1 - np.minimum(away, 1.0) ** 2) ** 4, axis=1)
+
+
+def bent_joints(edges: Sequence[Edge], others: Sequence[Edge]) -> Array:
+    """Corners (j, 3) between two edges both of which face other edges there, with the length of the shorter edge."""
+    found = []
+    for before in edges:
+        for after in edges:
+            normals = np.concatenate([before.normals(np.ones(1)), after.normals(np.zeros(1))])
+            if before.end == after.start and abs(cross(*normals)) > BENT:
+                facing = nearest_on(others, np.array([before.end])).normals
+                if (normals @ facing[0] < -STEEPEST).all():
+                    found.append((*before.end, min(before.length, after.length)))
+    return np.array(found).reshape(-1, 3)
+
+
 def paired_on(
-    edges: Sequence[Edge], start: EdgePlaces, points: Array, own: Array, share: Array
+    edges: Sequence[Edge], start: EdgePlaces, points: Array, own: Array, weights: tuple[NormalWeight, NormalWeight]
 ) -> tuple[EdgePlaces, Array, BoolArray]:
     """Places that form pairs with points (k, 2) [L]: each point is on the common normal of both boundaries there.
 
-    The common normal is the mean of the normal `own` (k, 2) into the body of the point, with the weight `share` (k,),
-    and of that of the place, with the rest. The search begins at a place near the pair. Where no place on its edge
-    forms one, the others are looked at.
+    The common normal is the mean of the normal `own` (k, 2) into the body of the point and of that of the place, with
+    the weights of both boundaries. The search begins at a place near the pair. Where no place on its edge forms one,
+    the others are looked at.
 
     Returns
     -------
     the places (j,), the common normals (j, 2), and which points (k,) have a pair
     """
     edge, fraction, met = start.edge.copy(), start.fraction.copy(), np.zeros(len(points), bool)
+    weighted, other_weight = weights[0].at(points)[:, None] * own, weights[1]
     for other in (None, *range(len(edges))):
         rows = np.flatnonzero(~met)
         if other is not None and len(rows):
             edge[rows], fraction[rows] = other, edges[other].curve.nearest(start.points[rows])
         for i in sorted({*edge[rows].tolist()}):
             on = rows[edge[rows] == i]
-            fraction[on], met[on] = _on_edge(edges[i], fraction[on], points[on], own[on], share[on])
+            fraction[on], met[on] = _on_edge(edges[i], fraction[on], points[on], weighted[on], other_weight)
+            met[on] &= np.sum(own[on] * edges[i].normals(fraction[on]), axis=1) > STEEPEST
     found = places_at(edges, edge[met], fraction[met])
-    return found, _common(own[met], found.normals, share[met]), met
+    return found, _common(weighted[met], found.normals, other_weight.at(found.points)), met
 
 
-def _common(own: Array, other: Array, share: Array) -> Array:
-    """Common unit normals (k, 2) of both; of opposite ones, which form no pair, the first."""
-    mean = share[:, None] * own + (1 - share[:, None]) * other
+def _common(own: Array, other: Array, weight: Array) -> Array:
+    """Common unit normals (k, 2) of weighted ones and of others with weights; the latter where both are opposite."""
+    mean = own + weight[:, None] * other
     size = np.hypot(*mean.T)[:, None]
-    return np.where(size > 0, mean / np.where(size > 0, size, 1.0), own)
+    return np.where(size > 0, mean / np.where(size > 0, size, 1.0), other)
 
 
-def _on_edge(edge: Edge, fraction: Array, points: Array, own: Array, share: Array) -> tuple[Array, BoolArray]:
+def _on_edge(edge: Edge, fraction: Array, points: Array, own: Array, weight: NormalWeight) -> tuple[Array, BoolArray]:
     """Fractions (k,) of pairs on an edge by Newton's method, and which of them are pairs."""
     fraction, left = fraction.copy(), np.arange(len(points))
     for _ in range(STEPS):
         at, ahead = fraction[left], np.where(fraction[left] > 0.5, -AHEAD, AHEAD)
-        offset, other, turned = points[left] - edge.points(at), edge.normals(at), edge.normals(at + ahead)
-        common = _common(own[left], other, share[left])
-        turn = cross(common, _common(own[left], turned, share[left])) / ahead
+        places, there = edge.points(at), edge.points(at + ahead)
+        offset, other, turned = points[left] - places, edge.normals(at), edge.normals(at + ahead)
+        common = _common(own[left], other, weight.at(places))
+        turn = cross(common, _common(own[left], turned, weight.at(there))) / ahead
         rate = cross(common, edge.directions(at)) * edge.length + turn * np.sum(common * offset, axis=1)
         most = LARGEST_TURN * AHEAD / np.maximum(abs(cross(other, turned)), LARGEST_TURN * AHEAD)
         step = np.clip(cross(common, offset) / np.where(rate == 0, np.inf, rate), -most, most)
@@ -112,6 +150,6 @@ def _on_edge(edge: Edge, fraction: Array, points: Array, own: Array, share: Arra
         left = left[abs(moved - at) > SETTLED]
         if not len(left):
             break
-    offset = points - edge.points(fraction)
-    off = cross(_common(own, edge.normals(fraction), share), offset)
+    places = edge.points(fraction)
+    off = cross(_common(own, edge.normals(fraction), weight.at(places)), points - places)
     return fraction, abs(off) <= MET * max(edge.length, abs(points).max(initial=0.0))

@@ -25,7 +25,7 @@ SAME = 1e-12
 
 
 class OppositePart(NamedTuple):
-    """A part of an edge of the first body with its closest points on one edge of the second body.
+    """A part of an edge of the first body that forms pairs with one edge of the second body.
 
     Parameters
     ----------
@@ -43,9 +43,8 @@ class OppositePart(NamedTuple):
 def opposite_parts(edges: Sequence[Edge], surface: BodySurface, reach: float = np.inf) -> list[OppositePart]:
     """Parts of edges opposite to a surface, in order, no farther from it than the nearest place and a reach [L].
 
-    A place is opposite to the surface if it is turned to it, and its closest point there is no corner, for pairs of
-    points need closest points of their own. The closest point may be a corner of a rigid surface both sides of which
-    the place is turned to.
+    A place is opposite to the surface if it is turned to it and forms a pair with a place there. That of a rigid
+    surface may be a corner both sides of which the place is turned to.
     """
     most = _largest_gap(edges, surface, reach)
     return [part for edge in edges for part in _parts_of(edge, surface, most)]
@@ -57,20 +56,6 @@ def _largest_gap(edges: Sequence[Edge], surface: BodySurface, reach: float) -> f
         return np.inf
     at = np.linspace(0.0, 1.0, SAMPLES + 1)
     return min((float(surface.feet(edge.points(at)).gap.min()) for edge in edges), default=0.0) + reach
-
-
-def blunt_corner(edges: Sequence[Edge], surface: BodySurface, reach: float = np.inf) -> Array | None:
-    """A corner (2,) of a surface to both sides of which an edge is turned where the corner is nearest; None without.
-
-    Corners that are farther away than the nearest place and a reach [L] do not count.
-    """
-    at, most = np.linspace(INSIDE, 1 - INSIDE, SAMPLES + 1), _largest_gap(edges, surface, reach)
-    for edge in edges:
-        feet = surface.feet(edge.points(at))
-        blunt = np.flatnonzero(feet.corner & _is_blunt(-edge.normals(at), feet, surface) & (feet.gap <= most))
-        if len(blunt):
-            return feet.points[blunt[0]]
-    return None
 
 
 def _is_blunt(inward: Array, feet: Feet, surface: BodySurface) -> BoolArray:

@@ -5,7 +5,6 @@ import pytest
 from several_bodies import block, circle, elastic, polygon, problem, rigid
 
 from bemcontact.problem.body_surface import BodySurface
-from bemcontact.problem.pairing import blunt_corner
 
 
 def parts(first, second, pair=("up/bottom", "low/top")):
@@ -46,14 +45,62 @@ def test_a_blunt_corner_of_a_rigid_body_is_within_one_part():
     assert max(ends) == 1
 
 
-def test_the_corner_of_an_elastic_body_across_a_gap_is_found():
-    spec = problem(
-        {"up": elastic(block((0, 2), (0.1, 1))), "low": rigid(polygon(left=(1, 0), under=(-2, -0.3), right=(4, -0.3)))},
-        accuracy=0.01,
-        touch=["up/bottom", "low"],
+@pytest.mark.parametrize("pair", [("up/bottom", "low"), ("low", "up/bottom")])
+def test_parts_meet_at_the_normal_of_the_other_side_at_a_corner_across_a_gap(pair):
+    """A corner has two normals, so that the common one there is that of the other side: vertical."""
+    roof = polygon(left=(1, 0), under=(-2, -0.3), right=(4, -0.3))
+    spec = problem({"up": elastic(block((0, 2), (0.1, 1))), "low": elastic(roof)}, accuracy=0.01, touch=list(pair))
+    onto = spec.zones["touch"].surface
+    assert isinstance(onto, BodySurface)
+    places = np.array([[1.0, 0.1]] if pair[0] == "up/bottom" else [[1.0, 0.0]])
+    found = onto.pairs(places)
+    assert np.allclose(abs(found.normals), [[0, 1]], atol=1e-12)
+    assert np.allclose(found.points[:, 0], 1.0, atol=1e-12)
+    ends = sorted(end for part in spec.opposite("touch") for end in part[1:3])
+    assert len(ends) == 4
+    if pair[0] == "up/bottom":
+        assert ends[1] == pytest.approx(0.5, abs=1e-9)
+        assert ends[2] == pytest.approx(0.5, abs=1e-9)
+
+
+BELOW = {
+    "circle": {"outer": [{"name": "rim", "kind": "arc", "center": [0, -7], "radius": 7, "angles": [0, 360]}]},
+    "ellipse": {
+        "outer": [{"name": "rim", "kind": "ellipse", "center": [0, -2], "semi_axes": [5, 2], "angles": [0, 360]}]
+    },
+    "bore": {
+        **block((-40, 40), (-40, 40)),
+        "holes": [[{"name": "rim", "kind": "arc", "center": [0, 9], "radius": 9, "angles": [0, -360]}]],
+    },
+}
+DISK = {"outer": [{"name": "rim", "kind": "arc", "center": [0, 5], "radius": 5, "angles": [0, 360]}]}
+
+
+@pytest.mark.parametrize("modulus", [50.0, 1000.0, 1e5])
+@pytest.mark.parametrize("below", [*BELOW])
+def test_pairs_are_the_same_whichever_side_is_first(below, modulus):
+    """Each point is the pair of its pair. Both are on their common normal, which is opposite in the other order."""
+    bodies = {"up": elastic(DISK, modulus=modulus), "low": elastic(BELOW[below])}
+    there, back = (
+        problem(bodies, accuracy=0.01, touch=pair).zones["touch"].surface
+        for pair in (["up/rim", "low/rim"], ["low/rim", "up/rim"])
     )
-    surface = spec.zones["touch"].surface
-    assert isinstance(surface, BodySurface)
-    corner = blunt_corner([spec.edge("up/bottom")], surface)
-    assert corner is not None
-    assert np.allclose(corner, (1, 0))
+    assert isinstance(there, BodySurface)
+    assert isinstance(back, BodySurface)
+    angle = np.linspace(-0.4, 0.4, 33)
+    points = np.column_stack([5 * np.sin(angle), 5 - 5 * np.cos(angle)])
+    pairs = there.pairs(points)
+    again = back.pairs(pairs.points)
+    assert np.abs(again.points - points).max() < 1e-11
+    assert np.abs(again.normals + pairs.normals).max() < 1e-12
+    assert np.abs(points - pairs.points - pairs.gap[:, None] * pairs.normals).max() < 1e-12
+    toward = modulus / (modulus + 1000)  # of equal Poisson's ratios, the moduli are those of Hertz
+    mean = toward * (np.array([0, 5]) - points) / 5 + (1 - toward) * there.edges[pairs.edge[0]].normals(pairs.fraction)
+    assert np.abs(pairs.normals[:, 0] * mean[:, 1] - pairs.normals[:, 1] * mean[:, 0]).max() < 1e-12
+
+
+def test_edges_that_cannot_come_to_touch_form_no_pairs():
+    """Sides that are steeper against each other than 60 degrees need displacements that are not small."""
+    bodies = {"up": elastic(DISK), "low": elastic(block((-40, 40), (-9, 0)))}
+    (part,) = problem(bodies, accuracy=0.01, touch=["up/rim", "low/top"]).opposite("touch")
+    assert (part.low, part.high) == (pytest.approx(7 / 12), pytest.approx(11 / 12))  # 30 degrees below the horizontal
