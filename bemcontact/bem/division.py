@@ -1,7 +1,7 @@
 """The division of edges into elements: as the edges state it, and where two elastic bodies face each other, matched.
 
-Contact points of two elastic bodies are pairs: a node of the first body and its closest point on the second one, which
-has a node there. So the elements of the second body end where those of the first have their closest points.
+Contact points of two elastic bodies are pairs: a node of the first body and a place of the second one on their common
+normal, which has a node there. So the elements of the second body end at the pairs of those of the first.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,7 +20,7 @@ from bemcontact.problem.problem import Problem
 NEAR = 0.3
 """Part of an element up to which one of its ends moves to where an opposite part ends, instead of a new end there."""
 BESIDE = 1e-3
-"""Distance from an end of some places, over their extent, where a closest point is on the same side of a full turn."""
+"""Distance from an end of some places, over their extent, where a pair is on the same side of a full turn."""
 SAME = 1e-11
 """Difference of two fractions of an edge up to which they are one element end."""
 
@@ -147,9 +147,9 @@ def _matched(
 ) -> tuple[Array, Array, list[tuple[str, Facing]]]:
     """Ends (e + 1,) before they are cut, elements (e, 3) of an edge that follows others, and facing pairs.
 
-    Elements that follow none are cut in equal parts; those that do have the nodes that the closest points give.
+    Elements that follow none are cut in equal parts; those that do have their nodes at pairs.
     """
-    covered: list[tuple[Array, Matched, int]] = []  # closest points of element ends, ascending
+    covered: list[tuple[Array, Matched, int]] = []  # pairs of element ends, ascending
     for item in onto:
         other = ends[item.part.edge]
         first, last = (int(np.abs(other - end).argmin()) for end in item.part[1:3])

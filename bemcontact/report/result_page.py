@@ -41,7 +41,7 @@ from bemcontact.report.formatting import (
     zone_surfaces,
 )
 from bemcontact.report.page import picture, template
-from bemcontact.report.verdicts import BEYOND, NORMALS, NOT_LOOKED_AT, case_verdicts, overall, result_verdicts
+from bemcontact.report.verdicts import BEYOND, NOT_LOOKED_AT, case_verdicts, overall, result_verdicts
 from bemcontact.report.zones import by_case, zone_rows
 from bemcontact.version import __version__
 
@@ -101,7 +101,7 @@ def render(
         notes=[*_notes(cases)],
         infinite=any(result.accuracy.infinite for result in cases.values()),
         assessed=any(result.accuracy.met is not None for result in cases.values()),
-        not_looked_at=NOT_LOOKED_AT + NORMALS if first.sides else NOT_LOOKED_AT,
+        not_looked_at=NOT_LOOKED_AT,
         body="body" if not first.sides else "first body of each contact",
         pictures=[_picture(name, svg, results, stress) for name, svg in pictures.items()],
         notes_beyond=any(BEYOND in note for result in cases.values() for note in result.notes),

@@ -14,12 +14,6 @@ NOT_LOOKED_AT = (
     "surfaces do not yield. Whether the input is that of your part: compare the picture of the problem with it."
 )
 """What no verdict covers."""
-NORMALS = (
-    " Pressure acts along the normals of the second body of each contact. Where bodies are curved, exchanging the two "
-    "changes the answer a little, for a roller on a block by 0.1 % where the half-width is 3 % of the radius. Error "
-    "bars do not include this."
-)
-"""What no verdict covers in contact of several bodies."""
 BEYOND = "do not include"
 """What a note says of error bars that leave out its subject."""
 

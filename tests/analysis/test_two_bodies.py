@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import bemcontact
+from bemcontact.problem.body_surface import BodySurface
 
 E_UPPER, E_LOWER, NU = 1000.0, 500.0, 0.3
 MODULUS = 1 / ((1 - NU**2) * (1 / E_UPPER + 1 / E_LOWER))
@@ -23,7 +24,7 @@ GROOVE = f"""
 """Half of a block with a groove of radius 24. On one of 12 by 20 the peak is higher by 0.014 %."""
 
 
-def quarter_cylinder_on(lower: str, load: float) -> bemcontact.Problem:
+def quarter_cylinder_on(lower: str, load: float, between: str = "[upper/under, lower/top]") -> bemcontact.Problem:
     """A cylinder of radius 8 on a body, under a load per thickness that is spread over its horizontal diameter."""
     return bemcontact.loads(f"""
 name: Hertz
@@ -41,7 +42,7 @@ bodies:
     boundary:
       outer:{lower}
     conditions: {{axis: {{displacement: {{x: 0}}}}, bottom: {{displacement: {{y: 0}}}}}}
-contacts: {{track: {{between: [upper/under, lower/top]}}}}
+contacts: {{track: {{between: {between}}}}}
 accuracy: 1e-3
 """)
 
@@ -116,3 +117,31 @@ def test_contact_of_a_receding_layer_is_as_long_under_any_load():
     assert 0.5 < lengths[0] < 2  # the layer lifts off soon beside what presses it
     assert lengths == pytest.approx(np.full(3, lengths[0]), rel=1e-9)
     assert peaks == pytest.approx(np.full(3, peaks[0]), rel=1e-9)
+
+
+BLOCK = """
+        - {name: bottom, start: [0, -16], end: [16, -16]}
+        - {name: right, end: [16, 0]}
+        - {name: top, end: [0, 0]}
+        - {name: axis}"""
+
+
+@pytest.mark.parametrize("load", [16.0, 100.0])
+def test_sides_may_be_exchanged(load):
+    """The answer is one but for error bars, and the end of contact on one side is the pair of that on the other.
+
+    With the normals of one side, half-widths would change by 0.2 % and 1 %.
+    """
+    one = quarter_cylinder_on(BLOCK, load)
+    first, second = map(bemcontact.solve, (one, quarter_cylinder_on(BLOCK, load, "[lower/top, upper/under]")))
+    assert first.certified
+    assert second.certified
+    assert first.footprint.peak
+    assert second.footprint.peak
+    bars = sum(bar.bar for result in (first, second) for bar in result.accuracy.bars if bar.quantity == "length")
+    assert first.footprint.peak.pressure == pytest.approx(second.footprint.peak.pressure, rel=bars)
+    surface = one.zones["track"].surface
+    assert isinstance(surface, BodySurface)
+    on_cylinder = np.array([first.footprint.intervals[0].end])
+    on_block = max(x for interval in second.footprint.intervals for x in (interval.start[0], interval.end[0]))
+    assert surface.pairs(on_cylinder).points[0, 0] == pytest.approx(on_block, rel=bars)

@@ -1,8 +1,9 @@
 """Frictionless contact of two elastic bodies by quadratic triangles; nothing of the package is used.
 
-Plane strain and small displacements. The nodes of both sides are matched: each node of body A has one of body B at its
-closest point, and the normal there, from B into A, is that of the pair. The unknown of A along the normal gives way to
-the one relative to B, on which the contact of one body with a rigid surface is solved as before.
+Plane strain and small displacements. The nodes of both sides are matched: each node of body A is on the normal of a
+pair with one of body B. This normal, from B into A, is the mean of those of both boundaries with their moduli as
+weights. The unknown of A along it gives way to the one relative to B, on which the contact of one body with a rigid
+surface is solved as before.
 """
 
 from dataclasses import dataclass
@@ -57,7 +58,7 @@ def press_together(a: Side, b: Side, normal: Place) -> Touch:
     Parameters
     ----------
     a, b : bodies with their sides
-    normal : unit normal (nx, ny) of B at the closest points of the nodes (x, y) of A, from B into A
+    normal : unit normal (nx, ny) of the pairs of the nodes (x, y) of A, from B into A
 
     Returns
     -------
@@ -111,6 +112,28 @@ def gaps(nodes: Array, opposite: Array, normals: Array) -> Array:
     if beside > MATCHED * np.ptp(nodes):
         raise ValueError(f"a node is {beside:.3g} beside the normal of its pair")
     return np.sum(between * normals, axis=1)
+
+
+PAIR_STEPS = 60
+"""Steps to the pair of a point on a circle. Each is closer by the clearance over the radius."""
+
+
+def common_normal(first: Array, second: Array, share: float) -> Array:
+    """Mean unit normal (n, 2) upwards of two circles at angles (n,) from their lowest points, by share of the first."""
+    mean = np.array([-share * np.sin(first) - (1 - share) * np.sin(second),
+                     share * np.cos(first) + (1 - share) * np.cos(second)])  # fmt: skip
+    return (mean / np.hypot(*mean)).T
+
+
+def on_circle(angle: Array, radius: float, center: float) -> Array:
+    """Points (n, 2) of a circle around (0, center) at angles (n,) from its lowest point."""
+    return np.column_stack([radius * np.sin(angle), center - radius * np.cos(angle)])
+
+
+def beside(first: Array, second: Array, pin: tuple[float, float], hole: tuple[float, float], share: float) -> Array:
+    """How far (n,) points of a pin at angles (n,) are beside common normals through points of a hole; to the right."""
+    normal, between = common_normal(first, second, share), on_circle(first, *pin) - on_circle(second, *hole)
+    return normal[:, 1] * between[:, 0] - normal[:, 0] * between[:, 1]
 
 
 def horizontal(level: float) -> Field:
@@ -167,11 +190,17 @@ def roller_on_block(
         mesh=mapped(angle, depths(end, radius, parts), quarter_of_cylinder(radius, radius)),
         young_modulus=moduli[0], poisson_ratio=0.3, held=((along_x, 0),),
     )  # fmt: skip
-    foot = radius * np.sin(np.radians(reach))
+    share, foot = moduli[0] / sum(moduli), radius * np.sin(np.radians(reach))
+
+    def normal(x: Array, y: Array) -> tuple[Array, Array]:
+        angle = np.arctan2(x, radius - y)
+        return tuple(common_normal(angle, np.zeros_like(angle), share).T)
 
     def across(s: Array) -> Array:
-        inside = radius * np.sin(np.radians(np.minimum(s, reach)))
-        return inside + (width - foot) * np.maximum(s - reach, 0)
+        x, y = quarter_of_cylinder(radius, radius)(np.minimum(s, reach), np.zeros_like(s))
+        nx, ny = normal(x, y)
+        inside = x - y * nx / ny
+        return inside + (width - inside) * np.maximum(s - reach, 0)
 
     along = np.append(angle[angle <= reach + 1e-9], reach + graded((0, 1, 14, 40), parts=parts)[1:])
     block = ElasticBody(
@@ -179,12 +208,12 @@ def roller_on_block(
         young_modulus=moduli[1], poisson_ratio=0.3, held=((along_x, 0), (horizontal(-height), 1)),
     )  # fmt: skip
     under = up_to(lambda x, y: np.where(y < radius - 1e-6, np.hypot(x, y - radius) - radius, 1.0), along_x, foot)
-    face = up_to(horizontal(0.0), along_x, foot)
+    face = up_to(horizontal(0.0), along_x, float(across(np.array([reach]))[0]))
     pushed = roller.traction(horizontal(radius), (0, -load / radius))
     return press_together(
         Side(body=roller, load=pushed, level=under, coordinate=along_x),
         Side(body=block, load=np.zeros(block.freedoms.size), level=face, coordinate=along_x),
-        upwards,
+        normal,
     )
 
 
@@ -211,14 +240,22 @@ def pin_in_plate(parts: int, *, clearance: float, load: float, end: float) -> To
     reach = min(2 * end, (end + 90) / 2)
     near = with_corner(around(end, reach), 45.0, parts)
 
-    def of_pin(angle: Array) -> Array:
-        """Angle at the center of the pin of what is at an angle up to `reach` at that of the hole, both in degrees."""
-        return angle + np.degrees(np.arcsin(clearance * np.sin(np.radians(angle)) / 10))
+    circles, share = ((10.0, -clearance), (hole, 0.0)), 210e3 / (210e3 + 70e3)
 
-    last = float(of_pin(np.array(reach)))
+    def of_pin(angle: Array) -> Array:
+        """Angle at the center of the pin of the pair of what is at an angle at that of the hole, both in degrees."""
+        there = np.radians(angle)
+        own = there.copy()
+        for _ in range(PAIR_STEPS):
+            own -= beside(own, there, *circles, share) / 10
+        return np.degrees(own)
+
+    last = float(of_pin(np.array([reach]))[0])
 
     def own(s: Array) -> Array:
-        return np.where(s <= reach, of_pin(np.minimum(s, reach)), last + (90 - last) * (s - reach))
+        return np.where(
+            s <= reach, of_pin(np.minimum(s, reach).ravel()).reshape(s.shape), last + (90 - last) * (s - reach)
+        )
 
     rest = graded((0, 1, 10, 2), parts=parts)[1:]
     quarter, deep = quarter_of_cylinder(10, -clearance), depths(10 * np.radians(end), 10, parts)
@@ -245,14 +282,17 @@ def pin_in_plate(parts: int, *, clearance: float, load: float, end: float) -> To
     seen = from_bottom(0.0)
 
     def normal(x: Array, y: Array) -> tuple[Array, Array]:
-        distance = np.hypot(x, y)
-        return -x / distance, -y / distance
+        own = np.arctan2(x, -clearance - y)
+        there = own.copy()
+        for _ in range(PAIR_STEPS):
+            there += beside(own, there, *circles, share) / hole
+        return tuple(common_normal(own, there, share).T)
 
     return press_together(
         Side(
             body=pin,
             load=pin.traction(horizontal(-clearance), (0, -load / 10)),
-            level=up_to(lambda x, y: np.hypot(x, y + clearance) - 10, seen, reach),
+            level=up_to(lambda x, y: np.hypot(x, y + clearance) - 10, from_bottom(-clearance), last),
             coordinate=seen,
         ),
         Side(

@@ -111,7 +111,7 @@ def test_hertz():
     touch = roller_on_block(
         1, radius=8.0, moduli=(1e3, 500.0), width=16.0, height=16.0, load=load / 2, end=half_width
     )  # fmt: skip
-    assert touch.force == pytest.approx([0, load / 2], rel=1e-9)
+    assert touch.force[1] == pytest.approx(load / 2, rel=1e-9)  # normals of a half have a force along x too
     assert touch.ends() == pytest.approx([0, half_width], rel=2e-3)
     assert touch.pressure_at(np.zeros(1)) == pytest.approx(2 * load / np.pi / half_width, rel=2e-3)
 
