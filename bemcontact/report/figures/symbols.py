@@ -86,8 +86,9 @@ def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, color: 
     roots = np.column_stack([np.interp(at, s, points[:, i]) for i in (0, 1)])
     inward = -np.column_stack([np.interp(at, s, normals[:, i]) for i in (0, 1)])
     tips = roots + 0.7 * depth * (inward + inward[:, ::-1] * (1, -1))
-    strokes = Path.make_compound_path(*(Path(stroke) for stroke in np.stack([roots, tips], axis=1)))
-    axes.add_patch(PathPatch(strokes, facecolor="none", edgecolor=color, linewidth=0.7, zorder=1))
+    strokes = Path(np.stack([roots, tips], axis=1).reshape(-1, 2), len(roots) * [Path.MOVETO, Path.LINETO])
+    axes.add_artist(PathPatch(strokes, facecolor="none", edgecolor=color, linewidth=0.7, zorder=1))
+    axes.update_datalim(strokes.vertices)  # as add_patch would, which takes long for thousands of strokes
     axes.plot(*points.T, color=color, linewidth=1.3, zorder=1)
     return np.concatenate([roots, tips])
 
