@@ -200,10 +200,16 @@ class _Search:
         return NoPeak.TO_INFINITE if near.any() else NoPeak.TO_BOUNDARY
 
     def _starts(self) -> tuple[Array, Array, Array]:
-        """Points (k, 2) that are larger than their neighbors, the largest first, their depths and values (k,)."""
+        """Points (k, 2) that are larger than their neighbors, the largest first, their depths and values (k,).
+
+        None where stress is the same all over but for round-off.
+        """
         points, pairs, stress, element = self.samples
         outer = np.append(~self.mirrors[element], np.zeros(len(points) - len(element), bool))
-        values = np.where(outer, -np.inf, np.nan_to_num(self.measure(stress), nan=-np.inf))
+        values = np.nan_to_num(self.measure(stress), nan=-np.inf)
+        if values.min() >= (1 - LEVEL) * values.max():
+            return np.zeros((0, 2)), np.zeros(0), np.zeros(0)
+        values = np.where(outer, -np.inf, values)
         around = np.full(len(values), -np.inf)
         for one, other in (pairs.T, pairs[:, ::-1].T):
             np.maximum.at(around, one, values[other])
