@@ -24,9 +24,7 @@ def test_bar_contains_hertz():
 
 
 @pytest.mark.parametrize("variant", [None, "stated mesh"])
-@pytest.mark.parametrize(
-    "name", ["cylinder_on_plane", "bolt_in_plate", "gallery/hertz_small", "gallery/rolling_polygon"]
-)
+@pytest.mark.parametrize("name", ["cylinder_on_plane", "bolt_in_plate", "gallery/rolling_polygon"])
 def test_bars_contain_finer_meshes(name: str, variant: str | None):
     """With elements a third as long the largest stresses differ by no more than the error bars."""
     problem = bemcontact.load(MODELS / f"{name}.yaml", **({} if variant is None else {"variant": variant}))
