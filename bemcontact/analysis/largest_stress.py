@@ -15,6 +15,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from bemcontact.analysis.body_stress import BodyStress
+from bemcontact.analysis.triangulated_body import FilledBody
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.contact.stress import (
@@ -25,7 +26,6 @@ from bemcontact.contact.stress import (
     NoPeak,
     Stress,
     StressPeak,
-    TriangulatedBody,
 )
 
 SEARCHES, AGAIN = 24, 0.7
@@ -51,7 +51,7 @@ RINGS = np.outer([0.5, 0.9], np.exp(2j * np.pi * np.arange(16) / 16)).ravel().vi
 Measure = Callable[[Stress], Array]
 
 
-def largest_stresses(body: BodyStress, whole: TriangulatedBody, pressed: BoolArray) -> LargestStresses:
+def largest_stresses(body: BodyStress, whole: FilledBody, pressed: BoolArray) -> LargestStresses:
     """Look for the largest stresses; `pressed` (m,) are the elements that touch."""
     problem, mesh = body.field.problem, body.field.mesh
     mirrors = np.zeros(len(mesh.elements), bool)
@@ -105,14 +105,14 @@ class _Samples(NamedTuple):
     element: IntArray
 
     @classmethod
-    def of(cls, body: BodyStress, whole: TriangulatedBody) -> Self:
+    def of(cls, body: BodyStress, whole: FilledBody) -> Self:
         """The corners of triangles, and the middles of those that do not touch the boundary.
 
         A maximum that is hardly higher than a ridge beside it may lie between corners that fall towards the ridge.
         """
         inner = whole.triangles[(whole.triangles >= len(whole.element)).all(axis=1)]
-        middles = body.stress(whole.points[inner].mean(axis=1))
-        number = len(whole.points) + np.arange(len(inner))
+        middles = body.stress(whole.at.points[inner].mean(axis=1))
+        number = len(whole.at.points) + np.arange(len(inner))
         sides = [whole.triangles[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 0))]
         both = whole.stress, middles
         stress = Stress(
