@@ -287,5 +287,7 @@ def test_the_picture_of_each_model_can_be_drawn(path: Path):
         problem = spec.load(path, variant="stated mesh")
     elif path.stem == "roller_bearing":
         problem = on_few_elements(problem)  # on a mesh for its accuracy, eleven bodies take half a minute
+    else:
+        problem = problem.with_value("accuracy", 0.1)
     results = bemcontact.solve_cases(problem) if problem.load_cases else bemcontact.solve(problem)
     figures.figure_of(results).draw_without_rendering()
