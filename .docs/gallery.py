@@ -100,11 +100,12 @@ def _table(paths: Iterable[Path]) -> Iterator[str]:
     for path in paths:
         problem = bemcontact.load(path)
         picture, file = ROOT / PICTURES / f"{path.stem}.svg", path.relative_to(ROOT / PAGE.parent)
+        errors = _errors(results(path).values()) if problem.reference else ()
         shown = f" The picture shows the load case '{_case(path)}'." if problem.case_names else ""
         yield (
             f'| <img src="../{picture.relative_to(ROOT).as_posix()}" width="320" alt="{problem.name}"> '
             f"| [{problem.name}]({file.as_posix()}): {_first_sentence(problem.description)}{shown} "
-            f"| {'<br>'.join(_errors(results(path).values()))} |"
+            f"| {'<br>'.join(errors)} |"
         )
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from bemcontact.analysis.body_stress import BodyStress
+from bemcontact.analysis.triangulated_body import FilledBody
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.contact.stress import (
@@ -25,7 +26,6 @@ from bemcontact.contact.stress import (
     NoPeak,
     Stress,
     StressPeak,
-    TriangulatedBody,
 )
 
 SEARCHES, AGAIN = 24, 0.7
@@ -51,7 +51,7 @@ RINGS = np.outer([0.5, 0.9], np.exp(2j * np.pi * np.arange(16) / 16)).ravel().vi
 Measure = Callable[[Stress], Array]
 
 
-def largest_stresses(body: BodyStress, whole: TriangulatedBody, pressed: BoolArray) -> LargestStresses:
+def largest_stresses(body: BodyStress, whole: FilledBody, pressed: BoolArray) -> LargestStresses:
     """Look for the largest stresses; `pressed` (m,) are the elements that touch."""
     problem, mesh = body.field.problem, body.field.mesh
     mirrors = np.zeros(len(mesh.elements), bool)
@@ -105,14 +105,14 @@ class _Samples(NamedTuple):
     element: IntArray
 
     @classmethod
-    def of(cls, body: BodyStress, whole: TriangulatedBody) -> Self:
+    def of(cls, body: BodyStress, whole: FilledBody) -> Self:
         """The corners of triangles, and the middles of those that do not touch the boundary.
 
         A maximum that is hardly higher than a ridge beside it may lie between corners that fall towards the ridge.
         """
         inner = whole.triangles[(whole.triangles >= len(whole.element)).all(axis=1)]
-        middles = body.stress(whole.points[inner].mean(axis=1))
-        number = len(whole.points) + np.arange(len(inner))
+        middles = body.stress(whole.at.points[inner].mean(axis=1))
+        number = len(whole.at.points) + np.arange(len(inner))
         sides = [whole.triangles[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 0))]
         both = whole.stress, middles
         stress = Stress(
@@ -200,10 +200,16 @@ class _Search:
         return NoPeak.TO_INFINITE if near.any() else NoPeak.TO_BOUNDARY
 
     def _starts(self) -> tuple[Array, Array, Array]:
-        """Points (k, 2) that are larger than their neighbors, the largest first, their depths and values (k,)."""
+        """Points (k, 2) that are larger than their neighbors, the largest first, their depths and values (k,).
+
+        None where stress is the same all over but for round-off.
+        """
         points, pairs, stress, element = self.samples
         outer = np.append(~self.mirrors[element], np.zeros(len(points) - len(element), bool))
-        values = np.where(outer, -np.inf, np.nan_to_num(self.measure(stress), nan=-np.inf))
+        values = np.nan_to_num(self.measure(stress), nan=-np.inf)
+        if values.min() >= (1 - LEVEL) * values.max():
+            return np.zeros((0, 2)), np.zeros(0), np.zeros(0)
+        values = np.where(outer, -np.inf, values)
         around = np.full(len(values), -np.inf)
         for one, other in (pairs.T, pairs[:, ::-1].T):
             np.maximum.at(around, one, values[other])

@@ -9,7 +9,7 @@ import numpy as np
 
 from bemcontact.analysis.body_stress import BodyStress, ensure_in_body
 from bemcontact.analysis.largest_stress import largest_stresses
-from bemcontact.analysis.triangulated_body import triangulated_body
+from bemcontact.analysis.triangulated_body import FilledBody, filled_body, triangulated_body
 from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.bem.mesh import BoundaryState, Mesh, build
 from bemcontact.bem.stress_field import Located
@@ -110,9 +110,14 @@ class StressOfBodies:
         return placed
 
     @cached_property
+    def _filled(self) -> tuple[FilledBody, ...]:
+        """Stress on triangles that fill each body."""
+        return tuple(map(filled_body, self.bodies))
+
+    @cached_property
     def triangulated(self) -> tuple[TriangulatedBody, ...]:
         """Displacement and stress on triangles that fill each body."""
-        return tuple(map(triangulated_body, self.bodies))
+        return tuple(map(triangulated_body, self.bodies, self._filled))
 
     @cached_property
     def filled(self) -> TriangulatedBody:
@@ -146,7 +151,7 @@ class StressOfBodies:
         """The largest stresses of all bodies."""
         each = [
             _with_name(body.name, largest_stresses(body, whole, pressed))
-            for body, whole, pressed in zip(self.bodies, self.triangulated, self.pressed, strict=True)
+            for body, whole, pressed in zip(self.bodies, self._filled, self.pressed, strict=True)
         ]
         zones = list(dict.fromkeys(zone for item in each for zone in item.shear))
         shear = {zone: _largest([item.shear.get(zone) for item in each]) for zone in zones}

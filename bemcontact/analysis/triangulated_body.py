@@ -1,19 +1,36 @@
 """Displacement and stress all over a body, on triangles that fill it."""
 
+from typing import NamedTuple
+
 from bemcontact.analysis.body_stress import BodyStress
+from bemcontact.arrays import IntArray
+from bemcontact.bem.stress_field import Located
 from bemcontact.bem.triangulation import triangulation
-from bemcontact.contact.stress import TriangulatedBody
+from bemcontact.contact.stress import Stress, TriangulatedBody
 
 
-def triangulated_body(body: BodyStress) -> TriangulatedBody:
-    """Fill a body with triangles, and compute displacement and stress at their corners."""
-    field = body.field
-    made = triangulation(field.mesh)
-    at = field.locate(made.points)
+class FilledBody(NamedTuple):
+    """Stress on triangles that fill a body, with the parts of `TriangulatedBody`, and where the points are."""
+
+    at: Located
+    triangles: IntArray
+    stress: Stress
+    element: IntArray
+
+
+def filled_body(body: BodyStress) -> FilledBody:
+    """Fill a body with triangles, and compute the stress at their corners."""
+    made = triangulation(body.field.mesh)
+    at = body.field.locate(made.points)
+    return FilledBody(at, made.triangles, body.at(at), made.element)
+
+
+def triangulated_body(body: BodyStress, filled: FilledBody) -> TriangulatedBody:
+    """Add the displacement at the corners."""
     return TriangulatedBody(
-        points=made.points,
-        triangles=made.triangles,
-        displacement=field.displacement(at)[..., 0],
-        stress=body.at(at),
-        element=made.element,
+        points=filled.at.points,
+        triangles=filled.triangles,
+        displacement=body.field.displacement(filled.at)[..., 0],
+        stress=filled.stress,
+        element=filled.element,
     )

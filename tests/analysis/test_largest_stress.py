@@ -191,12 +191,18 @@ def shear_maxima(result: Result, end: float) -> list[float]:
     padded[0] = padded[1]  # mirror image
     around = np.max([padded[i : i + 45, j : j + 45] for i in range(3) for j in range(3) if (i, j) != (1, 1)], axis=0)
     circle = np.exp(2j * np.pi * np.arange(24) / 24).view(float).reshape(-1, 2)
-    for i, j in np.argwhere(values >= around):
-        place, step = np.array([x[i, j], y[i, j]]), 0.1 * y[i, j]
-        for _ in range(60):
-            square = place + step * np.stack(np.meshgrid([0, -1, 1], [0, -1, 1]), axis=-1).reshape(-1, 2)
-            best = int(shear(square).argmax())
-            place, step = square[best], step if best else step / 2
+    square = np.stack(np.meshgrid([0, -1, 1], [0, -1, 1]), axis=-1).reshape(-1, 2)
+    i, j = np.nonzero(values >= around)
+    places, step, live = np.column_stack([x[i, j], y[i, j]]), 0.1 * y[i, j], np.arange(len(i))
+    least = 1e-4 * step  # a step away from a maximum, stress is lower by about the square of the step over the depth
+    for _ in range(60):
+        squares = places[live, None] + step[live, None, None] * square
+        best = shear(squares.reshape(-1, 2)).reshape(-1, 9).argmax(axis=1)
+        places[live], step[live] = squares[np.arange(len(live)), best], np.where(best, 1, 0.5) * step[live]
+        live = live[step[live] > least[live]]
+        if not len(live):
+            break
+    for place in places:
         depth, away = fine.query(place)[0], max(0.0, np.hypot(max(abs(place[0]) - end, 0), place[1]))
         value = shear(place[None])[0]
         if 0.01 * end < depth >= away / 2**0.5 and all(

@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "models" / "README.md").read_text(encoding="utf-8")
 MODELS = sorted(path.relative_to(ROOT / "models").as_posix() for path in (ROOT / "models").rglob("*.yaml"))
 LONG = {"bodies/roller_bearing.yaml"}
-"""Eleven bodies: the command that writes the page solves them, the tests do not, and their picture is larger."""
+"""Eleven bodies without a reference: they are solved for their picture only, which is larger, and not in tests."""
 PERCENT = r"\d[\d.e+-]*(?= %)"
 
 

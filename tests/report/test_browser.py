@@ -1,21 +1,20 @@
 """The page in a real browser: nothing complains, all is drawn, fits, and can be read in the light and in the dark."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from chromium import executable, opened, started
-from mesh_studies import of_many_settings, on_three_meshes, with_infinite_peak
 from playwright.sync_api import Browser
 from reproductions import on_base_meshes
-from results import cases, designed, followed, punched, rolled
+from results import designed, followed
 
 from bemcontact.report import folder
 
 pytestmark = pytest.mark.skipif(executable() is None, reason="there is no Chromium on this machine")
 
-STUDIES = {"meshes": on_three_meshes, "settings": of_many_settings, "infinite": with_infinite_peak}
-RESULTS = {"result": rolled, "infinite stress": punched, "cases": cases}
+STUDIES = ("meshes", "settings", "infinite")
+RESULTS = ("roller", "punch", "cases")
 PAGES = {"path": (folder.save_path, followed, "path.html"), "design": (folder.save_design, designed, "design.html")}
 PAPER = "paper"
 """The page of the paper's problems, beside those of mesh studies, results, paths and designs."""
@@ -95,20 +94,20 @@ def chromium() -> Iterator[Browser]:
 
 
 @pytest.fixture(scope="module", params=[*STUDIES, *RESULTS, *PAGES, PAPER])
-def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def report(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, written: Callable[[str], Path]
+) -> Path:
+    if request.param in RESULTS:
+        return written(request.param) / "result.html"
+    if request.param in STUDIES:
+        return written(request.param) / "report.html"
     place = tmp_path_factory.mktemp("reports") / request.param
     if request.param == PAPER:
         folder.save_reproduction(on_base_meshes(), place)
         return place / "page.html"
-    if request.param in PAGES:
-        save, content, page = PAGES[request.param]
-        save(content(), place)
-        return place / page
-    if request.param in RESULTS:
-        folder.save_result(RESULTS[request.param](), place, "name: x  # " + "long " * 60)
-        return place / "result.html"
-    folder.save(STUDIES[request.param](), place, "name: x  # " + "long " * 60)
-    return place / "report.html"
+    save, content, page = PAGES[request.param]
+    save(content(), place)
+    return place / page
 
 
 @pytest.mark.parametrize(("width", "dark"), [(380, True), (1200, False)], ids=["narrow and dark", "wide and light"])
@@ -138,10 +137,9 @@ def test_a_picture_is_transparent_and_its_ink_follows_the_page(chromium: Browser
     assert dark != pytest.approx(light, abs=0.02)
 
 
-def test_a_long_number_is_not_cut_on_a_telephone(chromium: Browser, tmp_path: Path):
+def test_a_long_number_is_not_cut_on_a_telephone(chromium: Browser, written: Callable[[str], Path]):
     """A force with its error and its unit is wider than what its label leaves of a card."""
-    folder.save_result(cases(), tmp_path / "page", "name: x")
-    with opened(chromium, tmp_path / "page" / "result.html", width=380) as (page, _):
+    with opened(chromium, written("cases") / "result.html", width=380) as (page, _):
         cells, cut = page.evaluate(CUT_CELLS)
     assert cells > 10
     assert cut == 0

@@ -30,7 +30,7 @@ from bemcontact.report.figures.page import (
 from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports
 from bemcontact.report.figures.stress import fill_with_stress
 from bemcontact.report.figures.surfaces import surfaces_of
-from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, place_names
+from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, place_names, settle
 from bemcontact.report.formatting import with_unit
 
 VISIBLE = 0.005
@@ -162,7 +162,9 @@ def draw_contact(
     each other, that with the largest pressure. With a `stress` the body is filled with its contours. `ValueError` for
     the result of a condensed problem.
     """
-    sketch_contact(axes, result, zone, stress=stress)()
+    write = sketch_contact(axes, result, zone, stress=stress)
+    settle(axes)
+    write()
 
 
 def sketch_contact(
@@ -172,7 +174,7 @@ def sketch_contact(
     setting: Setting | None = None,
     stress: StressMeasure | None = None,
 ) -> Callable[[], None]:
-    """Draw as `draw_contact` does, and return what writes the numbers; call it when the whole page has its contents.
+    """Draw as `draw_contact` does, and return what writes the numbers; call it when the whole page is settled.
 
     The setting is that of the result alone if there is none for several.
     """

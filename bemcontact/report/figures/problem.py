@@ -49,6 +49,7 @@ from bemcontact.report.figures.symbols import (
     joined,
     place_arrow,
     place_names,
+    settle,
 )
 from bemcontact.report.formatting import (
     NEGLIGIBLE,
@@ -97,10 +98,10 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     frame_plan(axes, drawn, problem.units.length)
     _draw_legend(axes, problem)
     names = [_name(problem, edge) for edge in problem.edges]
+    names += [*(name for _, name in tools), *_draw_rotation(axes, problem)]
+    settle(axes)
     with without_glyph_warnings():
-        taken = place_names(
-            axes, [*names, *(name for _, name in tools), *_draw_rotation(axes, problem)], drawn, _polygons(problem)
-        )
+        taken = place_names(axes, names, drawn, _polygons(problem))
         if (weight := _weight(problem)).any():
             place_arrow(axes, "$g$", weight, drawn, taken)
 

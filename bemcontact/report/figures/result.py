@@ -32,6 +32,7 @@ from bemcontact.report.figures.page import (
     short_label,
     wrapped,
 )
+from bemcontact.report.figures.symbols import settle
 from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import Verdict, in_short, overall, result_verdicts
 
@@ -86,6 +87,7 @@ def figure_of_result(result: Result, stress: StressMeasure = StressMeasure.VON_M
             axes.set_title(f"{short_label(name, 30)}: close-up", loc="left", fontsize=10)
         writers = [sketch_contact(contact, result)]
         writers += [sketch_contact(axes, result, name, stress=stress) for name, axes in closer.items()]
+        settle(contact)
         for write in writers:
             write()  # the last ones: labels are placed on the page as it is laid out
     return figure

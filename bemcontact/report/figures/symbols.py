@@ -12,6 +12,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Bbox
 
 from bemcontact.arrays import Array, BoolArray
+from bemcontact.report.figures.page import without_glyph_warnings
 
 SYMBOL_REACH = 18.0
 """Half the length of a symbolic arrow, in pixels of the page."""
@@ -86,8 +87,9 @@ def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, color: 
     roots = np.column_stack([np.interp(at, s, points[:, i]) for i in (0, 1)])
     inward = -np.column_stack([np.interp(at, s, normals[:, i]) for i in (0, 1)])
     tips = roots + 0.7 * depth * (inward + inward[:, ::-1] * (1, -1))
-    strokes = Path.make_compound_path(*(Path(stroke) for stroke in np.stack([roots, tips], axis=1)))
-    axes.add_patch(PathPatch(strokes, facecolor="none", edgecolor=color, linewidth=0.7, zorder=1))
+    strokes = Path(np.stack([roots, tips], axis=1).reshape(-1, 2), len(roots) * [Path.MOVETO, Path.LINETO])
+    axes.add_artist(PathPatch(strokes, facecolor="none", edgecolor=color, linewidth=0.7, zorder=1))
+    axes.update_datalim(strokes.vertices)  # as add_patch would, which takes long for thousands of strokes
     axes.plot(*points.T, color=color, linewidth=1.3, zorder=1)
     return np.concatenate([roots, tips])
 
@@ -111,13 +113,20 @@ def draw_arrows(axes: Axes, tails: Array, vectors: Array, color: str) -> Array:
     return np.concatenate([tails + share * vectors for share in (0.0, 0.35, 0.7, 1.0)])
 
 
+def settle(axes: Axes) -> None:
+    """Lay out the page, so that positions on it are known; names that are placed on it do not change them."""
+    page = axes.get_figure(root=True)
+    if page is not None:
+        with without_glyph_warnings():
+            page.draw_without_rendering()
+
+
 def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence[Array]) -> list[Box]:
     """Write names in order where they cover least, on their own side of the closed polygons (j, 2) of the boundary.
 
-    `drawn` are points (k, 2) of the drawing. The limits of the axes must be set. Names keep off a legend
-    and the labels of the axes. Return the boxes of what is taken.
+    `drawn` are points (k, 2) of the drawing. The limits of the axes must be set, and the page be settled. Names keep
+    off a legend and the labels of the axes. Return the boxes of what is taken.
     """
-    _settle(axes)
     to_page, frame = axes.transData, _room(axes)
     ink = to_page.transform(drawn)
     walls = [Path(to_page.transform(loop)) for loop in loops]
@@ -142,8 +151,10 @@ def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence
 
 
 def place_arrow(axes: Axes, symbol: str, vector: Array, drawn: Array, taken: Sequence[Box]) -> None:
-    """Draw an arrow of fixed length along a vector (2,), with its symbol at the tail, where it covers least."""
-    _settle(axes)
+    """Draw an arrow of fixed length along a vector (2,), with its symbol at the tail, where it covers least.
+
+    The page must be settled.
+    """
     reach = SYMBOL_REACH * vector / np.hypot(*vector)
     size = (2 * abs(float(reach[0])) + 22, 2 * abs(float(reach[1])) + 22)
     centers = _grid(axes.get_window_extent(), size)
@@ -157,13 +168,6 @@ def place_arrow(axes: Axes, symbol: str, vector: Array, drawn: Array, taken: Seq
         va="center",
         zorder=6,
     )
-
-
-def _settle(axes: Axes) -> None:
-    """Lay out the page, so that positions on it are known."""
-    page = axes.get_figure(root=True)
-    if page is not None:
-        page.draw_without_rendering()
 
 
 def _room(axes: Axes) -> Bbox:
