@@ -13,6 +13,7 @@ from bemcontact.assessment.footprint import footprint
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
 from bemcontact.bem.condense import Condensation, boundary_change, boundary_state, condensed
+from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import BoundaryState, Mesh
 from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.contact.load_cases import Change
@@ -56,6 +57,15 @@ class CaseAnswer:
     def traction(self) -> Array:
         """Traction (m, 3, 2) [p]."""
         return self.state.traction
+
+    def touching(self, points: ContactPoints) -> BoolArray:
+        """Whether points (n,) of another mesh of the problem are where there is contact on this one."""
+        inside = np.isin(points.run, [*self.around])
+        for run, stretches in self.stretches.items():
+            for item in stretches:
+                along = (points.arc_position - item.start) % points.run_length[run]  # infinite before an open stretch
+                inside |= (points.run == run) & (along <= item.end - item.start)
+        return inside
 
     def presses(self, element: int) -> bool:
         """Whether there is pressure on an element, or on the one of the other body that it faces."""
@@ -160,22 +170,26 @@ class Solved:
         return np.hypot(tangents[..., 0], tangents[..., 1]) * weights
 
 
-def solved(problem: Problem) -> Solved:
-    """Condense and solve a problem on its mesh; `SolverError` without a contact state."""
-    return solved_state(condensed(problem))
+def solved(problem: Problem, near: Solved | None = None) -> Solved:
+    """Condense and solve a problem on its mesh, as of `solved_state`; `SolverError` without a contact state."""
+    return solved_state(condensed(problem), near)
 
 
-def solved_state(condensation: Condensation) -> Solved:
-    """Solve a condensed problem, under the case that acts or each one; `SolverError` without a contact state."""
+def solved_state(condensation: Condensation, near: Solved | None = None) -> Solved:
+    """Solve a condensed problem, under the case that acts or each one; `SolverError` without a contact state.
+
+    The search for contact starts where it was on a mesh that is `near`, if one is known.
+    """
     problem, runs = condensation.body.problem, tuple(zone_runs(condensation.body))
     names = (None,) if problem.case is not None or not problem.load_cases else problem.case_names
-    answers = tuple(_answer(condensation.acting(name), runs) for name in names)
-    return Solved(condensation=condensation, runs=runs, answers=answers)
+    starts = [None] * len(names) if near is None else [it.touching(condensation.body.points) for it in near.answers]
+    answers = (_answer(condensation.acting(name), runs, start) for name, start in zip(names, starts, strict=True))
+    return Solved(condensation=condensation, runs=runs, answers=tuple(answers))
 
 
-def _answer(condensation: Condensation, runs: Sequence[ZoneRun]) -> CaseAnswer:
+def _answer(condensation: Condensation, runs: Sequence[ZoneRun], start: BoolArray | None) -> CaseAnswer:
     """Solve the contact problem of one load case."""
-    solution = complementarity.solve(condensation.contact)
+    solution = complementarity.solve(condensation.contact, near=start)
     if solution.status is not Status.SOLVED:
         raise SolverError(f"no contact state was found on a mesh: {solution.status.words}")
     state = boundary_state(condensation, solution.pressure, solution.rigid_amplitudes)

@@ -14,6 +14,7 @@ from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
 from bemcontact.adaptivity.sizes import OUTSIDE, Limit
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import Array, IntArray
+from bemcontact.problem.problem import Problem
 
 LAYERS = 5.0
 """Layers of elements in contact beside an end of contact, at first."""
@@ -47,10 +48,16 @@ class MeshSearch(MeshSizes):
     """State of the search for a mesh."""
 
     watch: Watch = field(default_factory=Watch)
+    last: Solved | None = None
+    """The answer on the mesh before, where the search for contact starts."""
 
     def solve(self, refine: int) -> Solved:
         """Solve on that mesh, under each load case."""
-        return solved(self.mesh(refine))
+        return self._solve_on(self.mesh(refine))
+
+    def _solve_on(self, mesh: Problem) -> Solved:
+        self.last = solved(mesh, self.last)
+        return self.last
 
     def halve(self) -> None:
         """Halve all elements."""
@@ -75,7 +82,7 @@ class MeshSearch(MeshSizes):
             mesh = self.mesh(1)
             if as_of_one(4 * sum(edge.elements or 0 for edge in part.edges) for part in mesh.parts) > most:
                 return coarse
-            coarse = solved(mesh)
+            coarse = self._solve_on(mesh)
         return coarse
 
     def ends_of_contact(self, answer: Solved) -> tuple[list[ContactEnd], list[tuple[int, Limit]]]:

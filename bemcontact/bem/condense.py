@@ -13,7 +13,8 @@ import numpy as np
 from bemcontact.arrays import Array, IntArray
 from bemcontact.bem.body import Body, body_of, ensure_held
 from bemcontact.bem.bonds import Bond, eliminate
-from bemcontact.bem.loading import combined
+from bemcontact.bem.congruence import congruent
+from bemcontact.bem.loading import Loading, combined
 from bemcontact.bem.mesh import BoundaryState, MeshPart
 from bemcontact.bem.response import Response
 from bemcontact.bem.rigid_motions import all_rigid_motions
@@ -27,23 +28,32 @@ from bemcontact.problem.problem import Problem
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CondensedPart:
-    """One elastic body, condensed by itself.
+    """One elastic body, condensed by itself, or by the factors of a body that it is congruent to.
 
     Parameters
     ----------
     mesh : of the body, with its place in the whole mesh
-    system : its equations
+    system : its equations, in the frame of that body
     response : solutions for each loading alone, of which there are 1 + c, and for its unit pressures, dimensionless
+    like : number of the body whose factors it has
+    turn : (2, 2) rotation x @ turn of vectors into the frame of that body
     """
 
     mesh: MeshPart
     system: System
     response: Response
+    like: int
+    turn: Array
 
     def state(self, pressure: Array, factors: Array) -> Array:
         """Solution of its equations for pressures and bond tractions (n + b,) [p] and factors (1 + c,) of loadings."""
         own = pressure[self.system.points.number] / self.system.stress
         return self.response.combined(np.append(factors, own))
+
+    def fields(self, z: Array, loading: Loading | None) -> tuple[Array, Array]:
+        """Displacement (N, 2) [L] and traction (m, 3, 2) [p] as of `System.fields`, as the body is turned."""
+        displacement, traction = self.system.fields(z, loading)
+        return displacement @ self.turn.T, traction @ self.turn.T
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -117,27 +127,40 @@ class CondensedTogether:
         start, count = sum(len(other.loadings) for other in self.bodies[:number]), len(body.loadings)
         loads = sum(len(other.loadings) for other in self.bodies)
         parts = []
-        for part, motions in zip(self.parts, body.motions, strict=True):
+        for part in self.parts:
             own = [*range(start, start + count), *range(loads, part.response.columns)]
             system = replace(
-                part.system, points=body.unit_pressures(part.mesh), motions=motions,
+                part.system,
+                points=body.unit_pressures(part.mesh).turned(part.turn),
                 loadings=part.system.loadings[start : start + count],
-            )  # fmt: skip
+            )
             parts.append(replace(part, system=system, response=part.response.of_columns(own)))
         return _condensation(body, tuple(parts))
 
 
 def condense_together(bodies: Sequence[Body]) -> CondensedTogether:
     """Condense bodies whose `matrix_of` is equal; `SingularSystemError` if the equations have no unique solution."""
-    first, parts = bodies[0], []
+    first = bodies[0]
     loadings = [loading for body in bodies for loading in body.loadings]
-    for stated, on_mesh, motions in zip(first.problem.parts, first.mesh.parts, first.motions, strict=True):
-        system = System(
+    systems = [
+        System(
             mesh=on_mesh.mesh, material=stated.material, points=first.unit_pressures(on_mesh), motions=motions,
             loadings=[loading.of_part(on_mesh) for loading in loadings],
-        )  # fmt: skip
-        parts.append(CondensedPart(mesh=on_mesh, system=system, response=solve_system(system)))
-    return CondensedTogether(bodies=bodies, parts=tuple(parts))
+        )
+        for stated, on_mesh, motions in zip(first.problem.parts, first.mesh.parts, first.motions, strict=True)
+    ]  # fmt: skip
+    parts: dict[int, CondensedPart] = {}
+    for like, turns in congruent(systems).items():
+        members = [systems[number].turned(turn, systems[like]) for number, turn in turns.items()]
+        every = [loading for system in members for loading in system.loadings]
+        response = solve_system(replace(systems[like], loadings=every))
+        for i, (number, system) in enumerate(zip(turns, members, strict=True)):
+            own = [*range(i * len(loadings), (i + 1) * len(loadings)), *range(len(every), response.columns)]
+            parts[number] = CondensedPart(
+                mesh=first.mesh.parts[number], system=system, like=like, turn=turns[number],
+                response=response if len(members) == 1 else response.of_columns(own),
+            )  # fmt: skip
+    return CondensedTogether(bodies=bodies, parts=tuple(parts[number] for number in sorted(parts)))
 
 
 def matrix_of(body: Body) -> tuple[object, ...]:
@@ -154,7 +177,12 @@ def matrix_of(body: Body) -> tuple[object, ...]:
 
 def _notes(body: Body, parts: Sequence[CondensedPart]) -> tuple[str, ...]:
     """Decisions that a user should know."""
-    return (*body.notes, *dict.fromkeys(note for part in parts for note in part.system.notes))
+    names, reused = [part.name for part in body.problem.parts], list[str]()
+    for number in range(len(parts)):
+        if others := [name for name, part in zip(names, parts, strict=True) if part.like == number][1:]:
+            listed = ", ".join(f"'{name}'" for name in others)
+            reused.append(f"the condensation of the body '{names[number]}' is reused for {listed}, of equal mesh")
+    return (*body.notes, *reused, *dict.fromkeys(note for part in parts for note in part.system.notes))
 
 
 def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
@@ -274,7 +302,7 @@ def boundary_columns(condensation: Condensation) -> tuple[Array, Array]:
         scale = np.append(np.ones(loads), np.full(len(system.points), 1 / system.stress))
         z = part.response.combined(np.diag(scale)).T
         for own, loading, column in zip_longest(z, system.loadings, number.tolist()):
-            u, t = system.fields(own, loading)
+            u, t = part.fields(own, loading)
             displacement[part.mesh.nodes, :, column], traction[part.mesh.elements, :, :, column] = u, t
     for element, local, point, vectors in _pressed(body):
         for axis in (0, 1):
@@ -310,7 +338,7 @@ def _boundary(
         ).displacement(body.mesh)[..., 0]
     for part in condensation.parts:
         acting = combined(part.system.loadings, factors.tolist()) if factors.any() else None
-        u, t = part.system.fields(part.state(pressure, factors), acting)
+        u, t = part.fields(part.state(pressure, factors), acting)
         displacement[part.mesh.nodes] += u
         traction[part.mesh.elements] = t
     displacement += body.seen.displacement(body.mesh) @ amplitudes

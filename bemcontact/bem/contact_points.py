@@ -63,6 +63,10 @@ class UnitPressures:
         """Return the number of pressures."""
         return len(self.number)
 
+    def turned(self, turn: Array) -> Self:
+        """Return these pressures on a body that is turned by a rotation (2, 2), x @ turn."""
+        return replace(self, traction=self.traction @ turn, change=self.change @ turn)
+
 
 class Opposite(NamedTuple):
     """The other elastic body at contact points.

@@ -203,6 +203,16 @@ class Loading:
             ),
         )
 
+    def turned(self, turn: Array) -> "Loading":
+        """The loading, without resultants, on a body that is turned by a rotation (2, 2), x @ turn."""
+        values, particular = self.values, self.particular
+        return Loading(
+            values=replace(values, displacement=values.displacement @ turn, traction=values.traction @ turn),
+            particular=replace(
+                particular, displacement=particular.displacement @ turn, traction=particular.traction @ turn
+            ),
+        )
+
     def forces(self, mesh: Mesh) -> Array:
         """Forces of the prescribed tractions at each (element, local node), (m, 3, 2) [p L]."""
         return mesh.tributary[..., None] * self.values.traction

@@ -9,7 +9,7 @@ In this module lengths are divided by L0 and stresses by the shear modulus (see 
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from importlib import import_module
 from typing import NamedTuple
@@ -204,6 +204,11 @@ class System:
     def values(self) -> BoundaryValues:
         """Prescribed values on the boundary."""
         return self.loadings[0].values
+
+    def turned(self, turn: Array, first: "System") -> "System":
+        """The equations in the frame of a congruent first body, into which (2, 2), x @ turn, turns loads and points."""
+        loadings = [loading.turned(turn) for loading in self.loadings]
+        return replace(first, points=self.points.turned(turn), loadings=loadings)
 
     @cached_property
     def influence(self) -> Influence:

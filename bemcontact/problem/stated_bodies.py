@@ -240,7 +240,8 @@ class StatedBodies(SpecModel):
         first, second = self.contacts[contact].between
         if SEPARATOR in (first if self.is_elastic(_body_in(first)) else second)[0]:
             return np.inf
-        return REACH * min(size_of_edges(self.boundary_of(body).edges) for body in self.sides_of(contact))
+        originals = (self.bodies[body].copy_of or body for body in self.sides_of(contact))  # a box depends on the turn
+        return REACH * min(size_of_edges(self.boundary_of(body).edges) for body in originals)
 
     def opposite(self, contact: str) -> tuple[OppositePart, ...]:
         """Parts of the edges of the first body that are opposite to the second one of a contact, or of a bond."""

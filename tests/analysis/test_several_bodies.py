@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from roller_bearings import ROLLERS, bearing, load_shares
 from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, problem, rigid, stated
 
 import bemcontact
@@ -343,3 +344,24 @@ def test_forces_of_contacts_are_not_summed_over_bodies():
     assert {row["body"] for row in rows if row["value"]} <= {"top", "middle", "low"}
     inside = result.largest_stresses().inside
     assert inside is None or f" in {inside.body}" in page
+
+
+@pytest.mark.parametrize(("load", "gap"), [(1e-3, -1e-5), (1e-3, 0.0)])
+def test_load_shares_of_a_bearing_with_rigid_rings(load, gap):
+    """All rollers carry with an interference, the lower ones without; the half-width is 2e-4 of the radius.
+
+    The closed form is as good as the square of that. The mesh has about ten elements in contact, whose ends are at
+    nodes: forces follow the logarithm of the width, so a tenth of an element in it is 1e-3.
+    """
+    result = bemcontact.solve(bearing(load, gap))
+    forces = np.hypot(*result.contact.resultants(result.solution.pressure).T)
+    by_name = dict(zip(result.contact.zone_names, forces.tolist(), strict=True))
+    inside, outside = (
+        np.array([by_name[f"{side} {i}"] for i in range(1, ROLLERS + 1)]) for side in ("inside", "outside")
+    )
+    expected = load_shares(load, gap, 1000 / (1 - 0.3**2))
+    assert result.certified
+    assert np.abs(inside - expected).max() < 2e-3 * expected.max()
+    assert np.abs(inside - outside).max() < 1e-9 * expected.max()
+    assert any("'roller 1' is reused for 'roller 2', 'roller 3'" in note for note in result.notes)
+    assert (inside[expected == 0] == 0).all()
