@@ -128,7 +128,7 @@ class BodySurface:
         points = np.asarray(points, float)
         first = nearest_on(self.first, points)
         at = np.flatnonzero(np.sum(first.normals * feet.normals, axis=1) < 0)
-        nearest = EdgePlaces(*(item[at] for item in feet[:3]), feet.normals[at])
+        nearest = EdgePlaces(feet.edge[at], feet.fraction[at], feet.points[at], feet.normals[at])
         places, normals, paired = paired_on(self.edges, nearest, points[at], -first.normals[at], self._weights)
         at = at[paired]
         gap, beside = np.sum((points[at] - places.points) * normals, axis=1), places.points - feet.points[at]
@@ -136,11 +136,11 @@ class BodySurface:
         own, other = curvatures(self.first, first)[at], curvatures(self.edges, places)
         # otherwise common normals cross on the way
         near &= (1 + self.share * own * gap > 0) & (1 + (1 - self.share) * other * gap > 0)
-        found, at = Feet(*(item.copy() for item in feet)), at[near]
-        found.corner[:], found.corner[at] = True, False
-        found.edge[at], found.fraction[at], found.points[at] = (item[near] for item in places[:3])
-        found.normals[at], found.gap[at] = normals[near], gap[near]
-        return found
+        at, edge, fraction, foot = at[near], feet.edge.copy(), feet.fraction.copy(), feet.points.copy()
+        edge[at], fraction[at], foot[at] = places.edge[near], places.fraction[near], places.points[near]
+        common, distance, corner = feet.normals.copy(), feet.gap.copy(), np.ones(len(points), bool)
+        common[at], distance[at], corner[at] = normals[near], gap[near], False
+        return Feet(edge, fraction, foot, distance, common, corner, feet.at_corner)
 
     @cached_property
     def _weights(self) -> tuple[NormalWeight, NormalWeight]:
