@@ -201,7 +201,7 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
         reached = f"contact reaches the end of the zone '{_zone(body, i)}' at ({x:.5g}, {y:.5g})"
         if abs(angles[node] - np.pi) < CORNER:
             yield (
-                f"{reached}, where the boundary goes on smoothly; make the zone longer, unless the rigid surface ends "
+                f"{reached}, where the boundary goes on smoothly; make the zone longer, unless the surface ends "
                 f"there with an edge: then {UNBOUNDED}"
             )
         elif free[node] and angles[node] > np.pi / 2 + CORNER:

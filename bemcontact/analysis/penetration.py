@@ -256,7 +256,7 @@ def _excused(gaps: SurfaceGaps, zone: str, depth: Array, xi: Array, allowed: flo
             f"{depth[element]:.2g} {gaps.problem.units.length}",
         )
         yield (
-            f"'{edge}' is not in '{zone}', and is inside its rigid surface by {inside.strip()} at ({x:.5g}, {y:.5g}): "
+            f"'{edge}' is not in '{zone}', and is inside its surface by {inside.strip()} at ({x:.5g}, {y:.5g}): "
             "displacements are so large that linear theory may be off by this, so it does not count; if this edge "
             "should touch, add it to the zone"
         )
@@ -268,7 +268,7 @@ def _behind(gaps: SurfaceGaps, zone: str, behind: BoolArray) -> Iterator[str]:
     if edges:
         names = ", ".join(f"'{name}'" for name in edges)
         yield (
-            f"part of {names} lies behind the rigid surface of '{zone}' as stated: the surface is taken to end before "
+            f"part of {names} lies behind the surface of '{zone}' as stated: the surface is taken to end before "
             "it, and contact there was not looked at"
         )
 
@@ -279,6 +279,6 @@ def _ended(gaps: SurfaceGaps, zone: str, ends: Iterable[FaceEnd]) -> Iterator[st
         edge, (x, y) = gaps.state.edge_names[gaps.state.edge[end.element]], end.at.tolist()
         if end.of_zone and not gaps.in_a_zone(end.element):
             yield (
-                f"the rigid surface of '{zone}' is taken to end at ({x:.5g}, {y:.5g}), where the zone ends: '{edge}' "
+                f"the surface of '{zone}' is taken to end at ({x:.5g}, {y:.5g}), where the zone ends: '{edge}' "
                 "lies in it and is in no zone; add it to the zone if the surface goes on"
             )

@@ -81,7 +81,7 @@ def tolerated(contact: CondensedContact, largest: float, size: float) -> float:
 
 def penetration_in_words(depth: str, place: str, zone: str, *, paired: bool) -> str:
     """What is wrong, and what to do, from a depth and a place in words."""
-    fact = f"The body penetrates the rigid surface of '{zone}' by {depth} at {place}"
+    fact = f"The body penetrates the surface of '{zone}' by {depth} at {place}"
     if paired:
         return (
             f"{fact}, between contact points, on another face of it, or where a condition holds the body. Shorten the "

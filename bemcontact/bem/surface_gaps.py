@@ -1,4 +1,4 @@
-"""Gaps between the deformed boundary and the rigid surfaces, at any place of its elements.
+"""Gaps between the deformed boundary and what it may touch, at any place of its elements.
 
 An edge need not belong to the zone of a surface. Places are on the curves of the edges themselves; the displacement is
 that of the elements.

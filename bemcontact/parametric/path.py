@@ -26,7 +26,7 @@ COMMON = {
     "compliance": "compliance",
     "rigid_motions": "free motions",
     "weights": "weights",
-    "normals": "directions of the rigid surfaces",
+    "normals": "directions of the surfaces",
 }
 """Fields that the ends of a path have in common, and their names in sentences."""
 SAME = 1e-11
@@ -155,7 +155,7 @@ class LoadPath(Leaf):
     @computed_field
     @property
     def resultant(self) -> PairTables:
-        """Force (x, y) of each rigid surface on the body (b, zones, 2) at the breakpoints, per thickness [p L]."""
+        """Force (x, y) of each contact on the body (b, zones, 2) at the breakpoints, per thickness [p L]."""
         return self.start.resultants(self.pressure)
 
     @cached_property

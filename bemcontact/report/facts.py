@@ -103,7 +103,7 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
     size, pressed, moves = coordinate_size(record), pressed_by(record), record["scales"]["displacement"]
     if not record["intervals"]:
         held = "" if record["motion_names"] else ", and the supports alone hold the body"
-        yield "Contact", f"nowhere: the body presses on no rigid surface{held}{_gap_left(record, units)}"
+        yield "Contact", f"nowhere: nothing presses on the body{held}{_gap_left(record, units)}"
     for (zone, place), count in Counter(contact_intervals(record, units, merged=True)).items():
         yield "Contact", f"{zone}: {place}" + (f", {count} times" if count > 1 else "")
     for zone in dict.fromkeys(record["zone"]):
@@ -311,7 +311,7 @@ def _span(interval: JsonObject, along: str, size: float, units: Units) -> str:
 
 
 def zone_forces(record: JsonObject, units: Units) -> dict[str, str]:
-    """Write the force of each rigid surface on the body with its error: ``{"foot": "(0, 3.00) ± 0.02 N/mm"}``."""
+    """Write the force of each contact on the body with its error: ``{"foot": "(0, 3.00) ± 0.02 N/mm"}``."""
     return {zone: _force(force, record, zone, units) for zone, force in record["forces"].items()}
 
 

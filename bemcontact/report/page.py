@@ -231,9 +231,9 @@ def _picture(name: str, svg: bytes, level: JsonObject) -> Picture:
 
 
 CAPTIONS = {
-    "problem": "The body with its mesh and conditions, and the rigid surfaces",
+    "problem": "Each body with its mesh and conditions, and what it may touch",
     "pressure": "Contact pressure of all formulations; where they agree, one curve lies inside the other",
-    "gap": "Gap between the body and the rigid surfaces",
+    "gap": "Gap between the body and what it may touch",
     "deformed": "Deformed shape of the direct solution",
     "difference": "Difference of each pressure from the direct solution",
     "convergence": "Distance of each quantity from its limit, mesh by mesh",

@@ -27,8 +27,8 @@ MOST_ROWS = 500
 CAPTIONS = {
     "problem": "What was asked, at the end of the path",
     "peak": "Peak pressure; dots are breakpoints, hollow ones have an error larger than asked, or not known",
-    "force": "Force of each rigid surface on the body",
-    "moment": "Moment of each rigid surface on the body, about (0, 0); errors of moments are not estimated",
+    "force": "Force of each contact on the body",
+    "moment": "Moment of each contact on the body, about (0, 0); errors of moments are not estimated",
     "pressure": "Pressure along the contact zones at eight values, from the start of the path to its end",
 }
 """Name of a picture -> its caption."""

@@ -50,7 +50,7 @@ ZONE_PICTURES = {"contact": "close-up of the contact, {stress}", "pressure": "pr
 MOST_PLACES = 6
 """Number of places of infinite stress that are listed."""
 CAPTIONS = {
-    "problem": "What was asked: the body, what holds and loads it, and the rigid surfaces",
+    "problem": "What was asked: each body, what holds and loads it, and what it may touch",
     "contact": "Where the body touches, and how hard; displacements are to scale",
     "contacts": "Where the body touches in each load case; all pressures have one scale",
     "deformed": "{stress} on the deformed shape; the surfaces move with the magnification",

@@ -156,7 +156,7 @@ def test_a_corner_that_is_held_beyond_the_zone_is_another_one():
 def test_on_a_smooth_boundary_both_readings_are_reported():
     """That of a zone too short, and that of a punch, whose pressure is infinite at its edge."""
     (note,) = notes(bemcontact.load(FOLDER / "flat_punch.yaml"), "contact reaches")
-    assert "(5, 0), where the boundary goes on smoothly; make the zone longer, unless the rigid surface ends" in note
+    assert "(5, 0), where the boundary goes on smoothly; make the zone longer, unless the surface ends" in note
     assert "infinite in theory" in note
 
 

@@ -145,3 +145,50 @@ def test_sides_may_be_exchanged(load):
     on_cylinder = np.array([first.footprint.intervals[0].end])
     on_block = max(x for interval in second.footprint.intervals for x in (interval.start[0], interval.end[0]))
     assert surface.pairs(on_cylinder).points[0, 0] == pytest.approx(on_block, rel=bars)
+
+
+PIN = """
+name: pin in plate
+bodies:
+  pin:
+    material: {young_modulus: 210000, poisson_ratio: 0.3}
+    boundary:
+      outer:
+        - name: under
+          kind: arc
+          center: [0, -0.02]
+          radius: 10
+          angles: [-90, 0]
+          elements: 100
+          grading: {ratio: 8, towards: start}
+        - {name: diameter, end: [0, -0.02], elements: 12}
+        - {name: axis, elements: 12}
+    conditions: {axis: {displacement: {x: 0}}, diameter: {traction: {y: -125}}}
+  plate:
+    material: {young_modulus: 70000, poisson_ratio: 0.3}
+    boundary:
+      outer:
+        - {name: bottom, start: [0, -40], end: [40, -40], elements: 10}
+        - {name: right, end: [40, 40], elements: 20}
+        - {name: top, end: [0, 40], elements: 10}
+        - {name: upper axis, end: [0, 10.02], elements: 10}
+        - {name: hole, kind: arc, center: [0, 0], end: [0, -10.02], clockwise: true, elements: 40}
+        - {name: lower axis, elements: 10}
+    conditions: {upper axis: &guided {displacement: {x: 0}}, lower axis: *guided, top: {displacement: {y: 0}}}
+contacts: {bearing: {between: [pin/under, plate/hole]}}
+accuracy: null
+"""
+"""A pin with a clearance of 0.02 under 1250 N/mm on half of it."""
+HALF_ANGLES = {13.0: 9.7972, 135.0: 31.7997, 1250.0: 70.8427}
+"""In degrees, by load [N/mm], from finite elements: `benchmarks/two_bodies.py`. They are uncertain by 1e-4 of each."""
+
+
+@pytest.mark.slow
+def test_the_angle_of_contact_of_a_pin_along_its_load():
+    """One exact path over the load has all of them; the rest of 1e-3 is for the mesh."""
+    followed = bemcontact.follow(bemcontact.loads(PIN), "bodies.pin.conditions.diameter.traction.y", -125.0, start=0.0)
+    assert followed.certified
+    for load, half_angle in HALF_ANGLES.items():
+        (interval,) = followed.path.footprint(load / 1250).intervals
+        x, y = interval.end
+        assert np.degrees(np.arctan2(x, -y)) == pytest.approx(half_angle, rel=1e-3)

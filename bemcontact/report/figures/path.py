@@ -155,7 +155,7 @@ def draw_peaks(axes: Axes, path: ParameterPath) -> None:
 
 
 def draw_resultants(axes: Axes, path: ParameterPath) -> None:
-    """Draw the size of the force of each rigid surface on the body over the parameter, with errors at breakpoints."""
+    """Draw the size of the force of each contact on the body over the parameter, with errors at breakpoints."""
     sizes = [[float(np.hypot(*force)) for force in state.resultant] for state in path.states]
     _draw_by_zone(axes, path, sizes, _pressing(path))
     for order, zone in enumerate(path.zones):
@@ -173,7 +173,7 @@ def draw_resultants(axes: Axes, path: ParameterPath) -> None:
 
 
 def draw_moments(axes: Axes, path: ParameterPath) -> None:
-    """Draw the moment about the origin of the force of each rigid surface on the body over the parameter."""
+    """Draw the moment about the origin of the force of each contact on the body over the parameter."""
     lever = float(np.abs(path.contact.points).max())
     _draw_by_zone(axes, path, [[*state.moments] for state in path.states], lever * _pressing(path))
     axes.set_ylabel(labeled("moment about (0, 0)", units_of(path.contact).line_moment))
