@@ -10,6 +10,7 @@ from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.boundary import size_of_edges
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.contact_zone import RigidTool
+from bemcontact.problem.reference import Crack, FlatPunch, ProppedBeam, Reference, ShrinkFit
 from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.stated_bodies import StatedBodies
 from bemcontact.problem.validation import KeyIssue
@@ -265,6 +266,20 @@ def _distance(problem: StatedBodies, bond: str) -> float | None:
         places = problem.edge(part.edge).points(np.linspace(part.low, part.high, SAMPLES))
         away.append(float(np.abs(surface.feet(places).gap).max()))
     return max(away, default=None)
+
+
+def closed_form_issues(problem: StatedBodies, references: Mapping[str, Reference]) -> Iterator[Issue]:
+    """Issues of closed forms of one elastic body that are stated for contact of two."""
+    for name, reference in references.items():
+        zones = [*problem.zones] if reference.zone is None else [reference.zone]
+        pairs = [parts for parts in map(problem.touching_parts, zones) if len(parts) > 1]
+        if isinstance(reference, FlatPunch | ShrinkFit | Crack | ProppedBeam) and pairs:
+            both = " and ".join(f"'{part.name}'" for part in pairs[0])
+            message = (
+                f"{reference.kind} is a closed form of one elastic body, and {both} are both elastic; state hertz, "
+                "uniform, values or table, or the zone of a rigid surface"
+            )
+            yield Issue(path=("reference", name, "kind"), message=message)
 
 
 def inside_issues(problem: StatedBodies) -> Iterator[Issue]:

@@ -19,7 +19,13 @@ from bemcontact.arrays import real_array
 from bemcontact.checks.arguments import load_factors, shown, text_of_argument, whole_number
 from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.options import EXPECTED_ACCURACY
-from bemcontact.problem.body_checks import body_issues, contact_issues, inside_issues, opposite_issues
+from bemcontact.problem.body_checks import (
+    body_issues,
+    closed_form_issues,
+    contact_issues,
+    inside_issues,
+    opposite_issues,
+)
 from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.contact_zone import ContactZone, RigidTool, ToolAction
 from bemcontact.problem.cross_checks import (
@@ -199,7 +205,7 @@ class Problem(StatedBodies):
         if not issues:
             issues += facing_issues(self.edges, stated, self._held_edges())
         if not issues:
-            issues += [*opposite_issues(self), *inside_issues(self)]
+            issues += [*opposite_issues(self), *inside_issues(self), *closed_form_issues(self, self.reference)]
         issues += self._mesh_choice_issues(raw, self.edges, self.mesh)
         for part in self.parts:
             issues += mesh_issues(part.boundary, self._boundary_path(part.name), self.mesh.refine)

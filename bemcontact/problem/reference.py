@@ -62,7 +62,7 @@ class ReferenceBase(SpecModel):
 
 
 class Hertz(ReferenceBase):
-    """Hertz theory for line contact of an elastic cylinder with a rigid plane or cylinder."""
+    """Hertz theory for line contact of an elastic cylinder with a plane or cylinder, rigid or elastic."""
 
     example: ClassVar[str] = "{kind: hertz, radius: 10, load: 400}"
 
@@ -71,9 +71,11 @@ class Hertz(ReferenceBase):
     load: Positive
     """The force per thickness on the whole contact, even if only half of it is modeled."""
     radius: Number
-    """The radius of the elastic body at the contact; negative if the body is concave, such as a ring on a pin."""
+    """The radius at the contact of the elastic body, of two that of the first side; negative if the body is concave,
+    such as a ring on a pin."""
     surface_radius: Number | None = None
-    """The radius of the rigid surface, negative if it is concave, such as a groove; left out for a plane."""
+    """The radius of the rigid surface or of the other body, negative if it is concave, such as a groove; left out for a
+    plane."""
     center: Point | None = None
     """The middle of the contact [x, y]; if left out, the point with the smallest initial gap."""
     half: Flag = False

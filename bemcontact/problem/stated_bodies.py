@@ -129,6 +129,12 @@ class StatedBodies(SpecModel):
         own = self.part_of(self.edges_of(zone)[0])
         return own, next((name for name in self.sides_of(zone) if name != own), own) if zone in self.contacts else ""
 
+    def touching_parts(self, zone: str | None) -> tuple[Part, ...]:
+        """The elastic bodies that meet in a zone, that with its edges first; of no zone in the first one."""
+        parts = {part.name: part for part in self.parts}
+        names = self.touching_bodies(next(iter(self.zones)) if zone is None else zone)
+        return tuple(parts[name] for name in dict.fromkeys(names) if name in parts)
+
     def part_of(self, edge: str) -> str:
         """Name of the body that has an edge; empty for the only body."""
         return edge.partition(SEPARATOR)[0] if self.bodies else ""

@@ -188,15 +188,15 @@ def _expected(name: str, stated: Reference, problem: Problem, contact: Condensed
 def _hertz(silent: Expected, stated: Hertz, problem: Problem, contact: CondensedContact) -> Expected:
     """Hertz, in range up to b/R = 0.1; near the end of contact, a node spacing at least, it is not compared."""
     surface = 0.0 if stated.surface_radius is None else 1 / stated.surface_radius
-    form = HertzContact(
-        load=stated.load, curvature=1 / stated.radius + surface, modulus=problem.material.contact_modulus
-    )
+    parts = problem.touching_parts(stated.zone)
+    modulus = 1 / sum(1 / part.material.contact_modulus for part in parts)
+    form = HertzContact(load=stated.load, curvature=1 / stated.radius + surface, modulus=modulus)
     frame = Frame.at(contact, stated.zone, stated.center)
     near = np.abs(frame.heights(contact.points)) < abs(stated.radius)
     x = np.where(near, frame.distances(contact.points), np.inf)
     pressure = _within(contact, stated, form.pressure(x))
     steep = np.maximum((1 - INTERIOR) * form.half_width, spacing(contact))
-    remark = _beyond_hertz(stated, form, reach(problem, frame))
+    remark = _beyond_hertz(stated, form, reach(parts, frame))
     return replace(
         silent,
         pressure=pressure,
@@ -228,7 +228,7 @@ def _flat_punch(silent: Expected, stated: FlatPunch, problem: Problem, contact: 
     frame = Frame.at(contact, stated.zone, stated.center)
     x = frame.distances(contact.points)
     pressure = _within(contact, stated, form.pressure(x))
-    size = reach(problem, frame) / stated.half_width
+    size = reach(problem.touching_parts(stated.zone), frame) / stated.half_width
     remark = ""
     if size < HALF_PLANE * (1 - 1e-9):
         remark = _shown(f"the punch needs a half-plane; here the body ends {size:.2g} half-widths away from its middle")
@@ -256,11 +256,12 @@ def _off_the_ends(form: PunchOnHalfPlane, x: Array) -> BoolArray:
 
 def _crack(silent: Expected, stated: Crack, problem: Problem, contact: CondensedContact) -> Expected:
     """The closed crack away from its tip, in range for a panel twenty times as large as its half-length."""
+    (part,) = problem.touching_parts(stated.zone)
     form = ClosedCrack(
         half_length=stated.half_length,
         half_height=stated.half_height,
         compression=stated.compression,
-        modulus=problem.material.contact_modulus,
+        modulus=part.material.contact_modulus,
         slit=stated.opening == "slit",
     )
     frame = Frame.at(contact, stated.zone, stated.center)
@@ -268,7 +269,7 @@ def _crack(silent: Expected, stated: Crack, problem: Problem, contact: Condensed
         return replace(silent, in_range=False, remark="the compression is too small to close the opening to its tip")
     x = frame.distances(contact.points)
     pressure = _within(contact, stated, form.pressure(x))
-    size = reach(problem, frame) / stated.half_length
+    size = reach((part,), frame) / stated.half_length
     remark = ""
     if size < INFINITE_PANEL * (1 - 1e-9):
         remark = _shown(f"the crack needs an infinite panel; here it ends {size:.2g} half-lengths away from its middle")
@@ -285,13 +286,14 @@ def _crack(silent: Expected, stated: Crack, problem: Problem, contact: Condensed
 
 def _propped_beam(silent: Expected, stated: ProppedBeam, problem: Problem) -> Expected:
     """The force of one support, in range for a slender beam that presses well on its prop."""
+    (part,) = problem.touching_parts(stated.zone)
     form = BeamOverProp(
         load=stated.load,
         span=stated.span,
         height=stated.height,
         gap=stated.gap,
-        modulus=problem.material.contact_modulus,
-        shear_modulus=problem.material.shear_modulus,
+        modulus=part.material.contact_modulus,
+        shear_modulus=part.material.shear_modulus,
     )
     if stated.support == "prop" and not form.prop:
         return replace(silent, in_range=False, remark="the beam does not reach its prop")
@@ -313,10 +315,11 @@ def _beyond_beam(stated: ProppedBeam, form: BeamOverProp) -> str:
 
 def _shrink_fit(stated: ShrinkFit, problem: Problem) -> float:
     """The pressure [p] of Lamé, on the pin or in the bore."""
+    (part,) = problem.touching_parts(stated.zone)
     ring = ShrunkRing(
         inner_radius=stated.inner_radius, outer_radius=stated.outer_radius, interference=stated.interference
     )
-    return (ring.pressure_on_pin if stated.rigid == "pin" else ring.pressure_in_bore)(problem.material)
+    return (ring.pressure_on_pin if stated.rigid == "pin" else ring.pressure_in_bore)(part.material)
 
 
 def _uniform(silent: Expected, value: float, contact: CondensedContact) -> Expected:

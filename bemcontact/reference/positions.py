@@ -1,12 +1,13 @@
 """Positions of contact points: distance from the middle of contact, and coordinates that references use."""
 
+from collections.abc import Sequence
 from typing import NamedTuple, Self
 
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.problem import Problem, Table, Values
+from bemcontact.problem import Part, Table, Values
 from bemcontact.serialization import Pair
 
 LEVEL = 1e-9
@@ -95,12 +96,20 @@ def spacing(contact: CondensedContact) -> Array:
     return farther
 
 
-def reach(problem: Problem, frame: Frame) -> float:
-    """Least extent [L] of the body from the middle of a contact: to the left, to the right, and inwards.
+def reach(parts: Sequence[Part], frame: Frame) -> float:
+    """Least extent [L] of bodies from the middle of a contact: to the left, to the right, and away from the other one.
+
+    Parameters
+    ----------
+    parts : the body into which `frame` is directed, then the other one if it is elastic
+    frame : in the middle of the contact
 
     A side without material is beyond a line of symmetry and does not count. Holes are ignored.
     """
-    outline = np.concatenate([edge.polyline() for edge in problem.loops[0]])
-    along, inward = frame.distances(outline), frame.heights(outline)
-    sides = [float(side) for side in (along.max(), -along.min()) if side > LEVEL * problem.size]
-    return min([*sides, float(inward.max())])
+    least = np.inf
+    for part, way in zip(parts, (1.0, -1.0), strict=False):
+        outline = np.concatenate([edge.polyline() for edge in part.loops[0]])
+        along, away = frame.distances(outline), way * frame.heights(outline)
+        sides = [float(side) for side in (along.max(), -along.min()) if side > LEVEL * part.boundary.size]
+        least = min([least, *sides, float(away.max())])
+    return least

@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 from messages import assert_states
-from several_bodies import HELD, block, circle, elastic, problem
+from several_bodies import HELD, block, circle, elastic, problem, stated
 
 import bemcontact
+from bemcontact.errors import ProblemError
 
 SPEC = """\
 name: two blocks
@@ -129,3 +130,22 @@ def test_a_turned_circle_stays_a_whole_one(turn):
     spec = problem(bodies, one=["disk", "other"], two=["other", "base"])
     meshed = spec.with_element_ends({"other/rim": [i / 10 for i in range(1, 10)]}).with_value("contacts.one.gap", 0.1)
     assert meshed.edge("other/rim").length == pytest.approx(2 * math.pi)
+
+
+@pytest.mark.parametrize(
+    "reference",
+    [
+        {"kind": "flat_punch", "load": 1, "half_width": 1, "center": [0, 0]},
+        {"kind": "shrink_fit", "inner_radius": 1, "outer_radius": 2, "interference": 0.1},
+        {"kind": "crack", "half_length": 1, "half_height": 0.1, "compression": 1, "center": [0, 0]},
+    ],
+)
+def test_closed_forms_of_one_elastic_body_are_refused_between_two(reference):
+    bodies = {"up": elastic(block((0, 2), (0, 1))), "low": elastic(block((0, 2), (-1, 0)))}
+    with pytest.raises(ProblemError) as refused:
+        stated(
+            name="two", bodies=bodies, accuracy=0.01, contacts={"c": {"between": ["up/bottom", "low/top"]}},
+            reference={"form": reference},
+        )  # fmt: skip
+    assert str(refused.value).startswith("reference.form.kind: ")
+    assert "'up' and 'low'" in str(refused.value)

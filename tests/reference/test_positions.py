@@ -97,4 +97,4 @@ def test_spacing_is_to_the_farther_neighbor_in_the_run():
 def test_reach(spec: str, center, expected: float):
     problem = bemcontact.loads(spec)
     contact = bemcontact.condense(problem)
-    assert reach(problem, Frame.at(contact, contact.zone_names[0], center)) == pytest.approx(expected, rel=1e-3)
+    assert reach(problem.parts, Frame.at(contact, contact.zone_names[0], center)) == pytest.approx(expected, rel=1e-3)
