@@ -149,29 +149,33 @@ def _matched(
 
     Elements that follow none are cut in equal parts; those that do have their nodes at pairs.
     """
-    covered: list[tuple[Array, Matched, int]] = []  # pairs of element ends, ascending
+    covered: list[tuple[Array, Array, Matched, int]] = []  # pairs of element ends and of nodes, ascending
     for item in onto:
-        other = ends[item.part.edge]
-        first, last = (int(np.abs(other - end).argmin()) for end in item.part[1:3])
-        places = _snapped(feet(item, edges[item.part.edge], other[first : last + 1]))
-        if (np.diff(places) >= 0).any():
+        name = item.part.edge
+        first, last = (int(np.abs(ends[name] - end).argmin()) for end in item.part[1:3])
+        theirs = fractions[name][first * refine : last * refine]
+        nodes = _snapped(feet(item, edges[name], theirs.ravel())).reshape(-1, 3)[::-1, ::-1]
+        places = np.append(nodes[::refine, 0], nodes[-1, 2])
+        if (np.diff(places) <= 0).any():
             raise ProblemError(_crossing(item))
-        covered.append((places[::-1], item, last))
+        covered.append((places, nodes, item, last))
     keep = np.ones(len(own), bool)
-    for places, _, _ in covered:
+    for places, *_ in covered:
         at = np.clip(np.searchsorted(own, places[[0, -1]]), 1, len(own) - 1)
         near = NEAR * (own[at] - own[at - 1])
         keep[1:-1] &= ~((own[1:-1] > places[0] - near[0]) & (own[1:-1] < places[-1] + near[1]))
-    every = np.concatenate([own[keep], *(places for places, _, _ in covered)])
+    every = np.concatenate([own[keep], *(places for places, *_ in covered)])
     every = np.sort(every)
     every = every[np.append(True, np.diff(every) > SAME)]
     every[0], every[-1] = 0.0, 1.0
     pieces, pairs = list[Array](), list[tuple[str, Facing]]()
-    follows: dict[int, tuple[Matched, int]] = {}
-    for places, item, last in covered:
+    follows: dict[int, tuple[Array, Matched, int]] = {}
+    for places, nodes, item, last in covered:
         begin = int(np.abs(every - places[0]).argmin())
         every[begin : begin + len(places)] = places
-        follows |= {begin + i: (item, last - 1 - i) for i in range(len(places) - 1)}
+        follows |= {
+            begin + i: (nodes[i * refine : (i + 1) * refine], item, last - 1 - i) for i in range(len(places) - 1)
+        }
     for element in range(len(every) - 1):
         number = len(pieces) * refine
         if element not in follows:
@@ -179,15 +183,13 @@ def _matched(
             steps[-1] = every[element + 1]
             pieces.append(_thirds(steps))
             continue
-        item, other = follows[element]
-        name = item.part.edge
-        theirs = fractions[name][other * refine : (other + 1) * refine]
-        images = _snapped(feet(item, edges[name], theirs.ravel())).reshape(-1, 3)[::-1, ::-1]
-        images[0, 0], images[-1, 2] = every[element], every[element + 1]
-        images[1:, 0] = images[:-1, 2]
-        pieces.append(images)
+        nodes, item, other = follows[element]
+        nodes[0, 0], nodes[-1, 2] = every[element], every[element + 1]
+        nodes[1:, 0] = nodes[:-1, 2]
+        pieces.append(nodes)
         pairs += [
-            (item.contact, Facing(name, other * refine + refine - 1 - i, item.onto, number + i)) for i in range(refine)
+            (item.contact, Facing(item.part.edge, other * refine + refine - 1 - i, item.onto, number + i))
+            for i in range(refine)
         ]
     return every, np.concatenate(pieces), pairs
 
