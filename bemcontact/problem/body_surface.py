@@ -120,19 +120,22 @@ class BodySurface:
         """Places that form pairs with points (k, 2) [L] of the first side, and the common normals there.
 
         Points are on the common normals of their pairs, so that the forces on both bodies have no moment together.
-        Pairs of a rigid body are the nearest places. A point that has no pair has the nearest place, as a corner.
+        Pairs of a rigid body are the nearest places. A point that has no pair, or is not on the first side, has the
+        nearest place, as a corner.
         """
         feet = self.feet(points)
         if self.share == 0:
             return feet
         points = np.asarray(points, float)
         first = nearest_on(self.first, points)
-        at = np.flatnonzero(np.sum(first.normals * feet.normals, axis=1) < 0)
+        flush = ROUND_OFF * max(edge.length for edge in (*self.first, *self.edges))
+        on_first = np.hypot(*(points - first.points).T) <= flush
+        at = np.flatnonzero(on_first & (np.sum(first.normals * feet.normals, axis=1) < 0))
         nearest = EdgePlaces(feet.edge[at], feet.fraction[at], feet.points[at], feet.normals[at])
         places, normals, paired = paired_on(self.edges, nearest, points[at], -first.normals[at], self._weights)
         at = at[paired]
         gap, beside = np.sum((points[at] - places.points) * normals, axis=1), places.points - feet.points[at]
-        near = np.hypot(*beside.T) <= WIDEST * (abs(feet.gap[at]) + ROUND_OFF * max(edge.length for edge in self.edges))
+        near = np.hypot(*beside.T) <= WIDEST * (abs(feet.gap[at]) + flush)
         own, other = curvatures(self.first, first)[at], curvatures(self.edges, places)
         # otherwise common normals cross on the way
         near &= (1 + self.share * own * gap > 0) & (1 + (1 - self.share) * other * gap > 0)

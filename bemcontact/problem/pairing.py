@@ -12,8 +12,10 @@ from bemcontact.problem.visibility import turned_to
 
 SAMPLES = 512
 """Samples of an edge between which it has at most one end of an opposite part."""
-HALVINGS = 60
-"""Halvings of the part of an edge in which such an end is."""
+SECTIONS = 16
+"""Sections into which the part of an edge with such an end is cut at a time."""
+CUTS = 15
+"""Times that it is cut: then it is as short as round-off."""
 HALF = 0.5
 """Difference of fractions of an edge between two samples from which its end is between them."""
 INSIDE = 1e-9
@@ -97,12 +99,11 @@ def _last(
 
     A full circle is one edge, whose end is its start.
     """
-    for _ in range(HALVINGS):
-        middle = (start + stop) / 2
-        onto, fraction = opposite(np.array([middle]))
-        if onto[0] == number and abs(fraction[0] - there) <= HALF:
-            start = middle
-        else:
-            stop = middle
+    for _ in range(CUTS):
+        places = np.linspace(start, stop, SECTIONS + 1)
+        onto, fraction = opposite(places[1:-1])
+        other = np.append((onto != number) | (abs(fraction - there) > HALF), True)
+        first = int(other.argmax())
+        start, stop = places[first], places[first + 1]
     ends = (edge_end for edge_end in (0.0, 1.0) if abs(start - edge_end) <= SAME)
     return next(ends, start)
