@@ -12,7 +12,7 @@ from bemcontact.analysis.largest_stress import largest_stresses
 from bemcontact.analysis.triangulated_body import FilledBody, filled_body, triangulated_body
 from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.bem.mesh import BoundaryState, Mesh, build
-from bemcontact.bem.stress_field import Located
+from bemcontact.bem.stress_field import Located, StressField
 from bemcontact.contact.stress import (
     INSIDE,
     ON_BOUNDARY,
@@ -73,7 +73,7 @@ class StressOfBodies:
         placed = self._placed(points, name)
         if len(self.bodies) == 1:
             return self.bodies[0].at(placed[0])
-        owner = _owner(placed)
+        owner = owners(placed)
         each = [body.at(at) for body, at in zip(self._named(name), placed, strict=True)]
         rows = np.arange(len(owner))
         return Stress(
@@ -87,27 +87,15 @@ class StressOfBodies:
         """Displacement (k, 2) [L] at points (k, 2), likewise."""
         placed = self._placed(points, name)
         each = [body.field.displacement(at)[..., 0] for body, at in zip(self._named(name), placed, strict=True)]
-        return np.stack(each)[_owner(placed), np.arange(len(each[0]))]
+        return np.stack(each)[owners(placed), np.arange(len(each[0]))]
 
     def _named(self, name: str | None) -> Sequence[BodyStress]:
         """The body of a name, or all; `ProblemError` if there is none of this name."""
-        if name is None:
-            return self.bodies
-        own = [body for body in self.bodies if body.name == name]
-        if not own:
-            names = [body.name for body in self.bodies if body.name]
-            raise ProblemError(unknown_word("elastic body", str(name), names))
-        return own
+        return [self.bodies[i] for i in numbers_of([body.name for body in self.bodies], name)]
 
     def _placed(self, points: object, name: str | None) -> list[Located]:
         """Where points are in each body, or in one; `ProblemError` if one is in none."""
-        array, bodies = real_array(points, "points", (None, 2)), self._named(name)
-        placed = [body.field.locate(array) for body in bodies]
-        nowhere = np.all([at.outside for at in placed], axis=0)
-        if nowhere.any():
-            nearest = int(np.argmin([at.distance[np.argmax(nowhere)] for at in placed]))
-            ensure_in_body(bodies[nearest].field, placed[nearest]._replace(outside=nowhere))
-        return placed
+        return placed_in([body.field for body in self._named(name)], points)
 
     @cached_property
     def _filled(self) -> tuple[FilledBody, ...]:
@@ -167,7 +155,26 @@ class StressOfBodies:
         )
 
 
-def _owner(placed: Sequence[Located]) -> IntArray:
+def numbers_of(names: Sequence[str], name: str | None) -> list[int]:
+    """Numbers of the elastic bodies of a name, or of all; `ProblemError` if there is none of this name."""
+    numbers = [i for i, own in enumerate(names) if name in (None, own)]
+    if not numbers:
+        raise ProblemError(unknown_word("elastic body", str(name), [own for own in names if own]))
+    return numbers
+
+
+def placed_in(fields: Sequence[StressField], points: object) -> list[Located]:
+    """Where points (k, 2) are in each of some bodies; `ProblemError` if one is in none."""
+    array = real_array(points, "points", (None, 2))
+    placed = [field.locate(array) for field in fields]
+    nowhere = np.all([at.outside for at in placed], axis=0)
+    if nowhere.any():
+        nearest = int(np.argmin([at.distance[np.argmax(nowhere)] for at in placed]))
+        ensure_in_body(fields[nearest], placed[nearest]._replace(outside=nowhere))
+    return placed
+
+
+def owners(placed: Sequence[Located]) -> IntArray:
     """Number (k,) of the first body that has each point, inside rather than on its boundary."""
     inside, outside = (np.stack([getattr(at, name) for at in placed]) for name in ("inside", "outside"))
     return np.where(inside.any(axis=0), inside.argmax(axis=0), (~outside).argmax(axis=0))

@@ -4,11 +4,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bemcontact.adaptivity.adapt import meshed
-from bemcontact.analysis.body_stress import ensure_in_body, infinite_starts, kinds
+from bemcontact.analysis.body_stress import infinite_starts, kinds
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.solve import ensure_kind
-from bemcontact.arrays import BoolArray, IntArray, real_array
+from bemcontact.analysis.stress_of_bodies import numbers_of, owners, placed_in
+from bemcontact.arrays import Array, BoolArray
+from bemcontact.bem.body import Body
 from bemcontact.bem.condense import Condensation, boundary_columns, condensed
+from bemcontact.bem.outline import Outline
 from bemcontact.bem.stress_field import StressField
 from bemcontact.blas_threads import one_thread
 from bemcontact.contact.stress import PointKind
@@ -18,74 +21,82 @@ from bemcontact.problem.problem import Problem
 
 
 @one_thread
-def stress_operator(problem: Problem | Result, points: ArrayLike) -> StressOperator:
-    """Stress at points of a body as a linear function of its contact pressures and rigid amplitudes.
+def stress_operator(problem: Problem | Result, points: ArrayLike, body: str | None = None) -> StressOperator:
+    """Stress at points of bodies as a linear function of contact pressures and rigid amplitudes.
 
     Parameters
     ----------
     problem : a Problem, which is condensed as by `bemcontact.condense`, or a Result, whose mesh is taken
-    points : (k, 2) places (x, y) in the undeformed body [L], none of them where stress may be infinite
+    points : (k, 2) places (x, y) in the undeformed bodies [L], none of them where stress may be infinite
+    body : name of the body that has the points, where several touch; the first one that has each point if left out
 
     Returns
     -------
     StressOperator
-        Its `contact` is the condensed body to which its columns belong; `bemcontact.model` takes it.
+        Its `contact` is the condensed contact to which its columns belong; `bemcontact.model` takes it.
 
     Raises
     ------
     ProblemError
-        If there are several bodies, or a point is outside the body or where stress may be infinite; otherwise as of
+        If there is no such body, or a point is outside the bodies or where stress may be infinite; otherwise as of
         `condense`.
     SingularSystemError
-        If the equations of the body have no unique solution.
+        If the equations of a body have no unique solution.
     """
     if isinstance(problem, Result):
         if problem.problem is None:
             raise ProblemError("the result of a condensed problem has no body; give the Problem itself")
-        return operator_of(condensed(problem.problem), points)
+        return operator_of(condensed(problem.problem), points, body)
     ensure_kind(problem, Problem, Result)
-    return operator_of(meshed(problem.without_joints(), errors=False).condensation, points)
+    return operator_of(meshed(problem.without_joints(), errors=False).condensation, points, body)
 
 
-def operator_of(condensation: Condensation, points: ArrayLike) -> StressOperator:
-    """The operator of a body that has been condensed."""
+def operator_of(condensation: Condensation, points: ArrayLike, name: str | None = None) -> StressOperator:
+    """The operator of bodies that have been condensed."""
     body, contact = condensation.body, condensation.contact
-    part, *others = body.problem.parts
-    if others:
-        raise ProblemError(
-            "a stress operator is of one body, and this problem has several; ask the result for its stress"
-        )
-    displacement, traction = boundary_columns(condensation)
-    loads = [of_parts[0] for of_parts in body.problem.volume_loads]
-    factors = np.zeros((displacement.shape[2], len(loads)))
-    np.fill_diagonal(factors, 1.0)
-    field = StressField.of(body.outline, part.material, displacement, traction, loads, factors)
-    at = field.locate(real_array(points, "points", (None, 2)))
-    ensure_in_body(field, at)
-    kind = kinds(field, at, _may_be_infinite(field, body.points.element))
-    if (kind == PointKind.SINGULAR).any():
-        first = int(np.argmax(kind == PointKind.SINGULAR))
-        x, y = at.points[first]
+    columns = boundary_columns(condensation)
+    touching = np.concatenate([body.points.element, body.points.opposite.element])
+    numbers = numbers_of([part.name for part in body.problem.parts], name)
+    fields = [_field_of(body, number, *columns) for number in numbers]
+    placed = placed_in(fields, points)
+    owner, rows = owners(placed), np.arange(len(placed[0].points))
+    kind, values = [], []
+    for number, field, at in zip(numbers, fields, placed, strict=True):
+        own = body.mesh.parts[number].elements
+        pressed = np.isin(np.arange(len(body.mesh.elements))[own], touching)
+        kind.append(kinds(field, at, _may_be_infinite(field, pressed)))
+        in_plane = field.stress(at)
+        values.append(np.concatenate([in_plane, field.out_of_plane(in_plane, at.points)[None]]))
+    of_kind = np.stack(kind)[owner, rows]
+    if (of_kind == PointKind.SINGULAR).any():
+        first = int(np.argmax(of_kind == PointKind.SINGULAR))
+        x, y = placed[0].points[first]
         raise ProblemError(
             f"points[{first}] = ({x:.6g}, {y:.6g}) is at a corner, a change of conditions or an end of a contact zone "
             "where stress may be infinite; give points at some distance from it"
         )
-    in_plane = field.stress(at)
-    values = np.concatenate([in_plane, field.out_of_plane(in_plane, at.points)[None]]).transpose(1, 0, 2)
-    count = len(loads)
+    components, loads = np.stack(values)[owner, :, rows], len(body.loadings)
     return StressOperator(
         contact=contact,
-        points=at.points,
-        kind=kind,
-        pressure=values[..., count:],
-        amplitudes=np.zeros((*values.shape[:2], contact.rigid_motions.shape[1])),
-        loads=values[..., :count],
+        points=placed[0].points,
+        kind=of_kind,
+        pressure=components[..., loads:],
+        amplitudes=np.zeros((*components.shape[:2], contact.rigid_motions.shape[1])),
+        loads=components[..., :loads],
     )
 
 
-def _may_be_infinite(field: StressField, touching: IntArray) -> BoolArray:
+def _field_of(body: Body, number: int, displacement: Array, traction: Array) -> StressField:
+    """Field of the elastic body of a number, by each loading and each unit pressure alone."""
+    mesh, elements, nodes = body.mesh.parts[number]
+    loads = [of_parts[number] for of_parts in body.problem.volume_loads]
+    factors = np.zeros((displacement.shape[2], len(loads)))
+    np.fill_diagonal(factors, 1.0)
+    outline = Outline(problem=body.problem, mesh=mesh)
+    material = body.problem.parts[number].material
+    return StressField.of(outline, material, displacement[nodes], traction[elements], loads, factors)
+
+
+def _may_be_infinite(field: StressField, touching: BoolArray) -> BoolArray:
     """Whether stress is infinite where each element starts, if no element that may touch does, or all of them do."""
-    pressed = np.zeros(len(field.mesh.elements), bool)
-    without = infinite_starts(field, pressed)
-    pressed[touching] = True
-    return without | infinite_starts(field, pressed)
+    return infinite_starts(field, np.zeros_like(touching)) | infinite_starts(field, touching)

@@ -295,7 +295,7 @@ def boundary_columns(condensation: Condensation) -> tuple[Array, Array]:
     Their sum with factors and pressures is the state of the boundary but for rigid motions of the bodies.
     """
     body, loads = condensation.body, len(condensation.body.loadings)
-    columns, mesh = loads + len(body.points), body.mesh
+    columns, mesh = loads + len(body.points) + len(body.bonds), body.mesh
     displacement, traction = np.zeros((*mesh.nodes.shape, columns)), np.zeros((*mesh.elements.shape, 2, columns))
     for part in condensation.parts:
         system, number = part.system, np.append(np.arange(loads), loads + part.system.points.number)
@@ -307,7 +307,13 @@ def boundary_columns(condensation: Condensation) -> tuple[Array, Array]:
     for element, local, point, vectors in _pressed(body):
         for axis in (0, 1):
             np.add.at(traction[:, :, axis], (element, local, loads + point), vectors[:, axis])
-    return displacement, traction
+    if condensation.bond is None:
+        return displacement, traction
+    by_pressure, by_loading = condensation.bond.traction
+    held, count = np.hstack([by_loading, by_pressure]), loads + len(body.points)
+    return displacement[..., :count] + displacement[..., count:] @ held, traction[..., :count] + traction[
+        ..., count:
+    ] @ held
 
 
 def _pressed(body: Body) -> Iterator[tuple[IntArray, IntArray, IntArray, Array]]:

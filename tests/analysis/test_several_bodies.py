@@ -315,14 +315,32 @@ def test_bodies_that_bulge_into_each_other_below_a_third_are_named():
     assert "between: [a, b]" in penetration.words or "between: [b, a]" in penetration.words
 
 
-def test_a_stress_operator_is_of_one_body():
-    bodies = {
-        "up": elastic(block((0, 1), (0, 1)), {"top": {"pressure": 1.0}}),
-        "low": elastic(block((0, 1), (-1, 0)), HELD),
-    }
-    spec = problem(bodies, face={"between": ["up/bottom", "low/top"]}, accuracy=0.05)
-    with pytest.raises(bemcontact.ProblemError, match="is of one body, and this problem has several"):
-        bemcontact.stress_operator(spec, [[0.5, 0.5]])
+@pytest.mark.parametrize("bonded", [False, True])
+def test_a_stress_operator_gives_the_stress_of_each_body(bonded):
+    """Of a half disk on a block, whose lower part is another body. The operator is another sum of the same numbers."""
+    bodies = dict(roller().bodies)
+    if bonded:
+        bodies["base"] = elastic(block((-6, 6), (-3, 0), (6, 2, 12, 2)), modulus=500.0)
+        bodies["floor"] = elastic(block((-6, 6), (-6, -3), (6, 2, 6, 2)), HELD, 2000.0)
+    spec = stated(
+        name="operator", bodies=bodies, accuracy=None, contacts={"c": {"between": ["disk/under", "base/top"]}},
+        bonded={"glue": ["base/bottom", "floor/top"]} if bonded else {},
+    )  # fmt: skip
+    result, points = bemcontact.solve(spec), [[0.1, 0.3], [0.2, -0.4], [1.0, -5.0], [-2.0, 3.5]]
+    operator = bemcontact.stress_operator(result, points)
+    solution, stress = result.solution, result.stress(points)
+    found = operator.pressure @ solution.pressure + operator.loads[..., 0]
+    wanted = np.column_stack([stress.components, stress.zz])
+    assert np.abs(found - wanted).max() < 1e-9 * np.abs(wanted).max()
+    below = bemcontact.stress_operator(result, [[0.0, 0.0]], body="base")
+    own = result.stress([[0.0, 0.0]], body="base").components
+    assert (below.pressure @ solution.pressure + below.loads[..., 0])[:, :3] == pytest.approx(own, rel=1e-9, abs=1e-9)
+    with pytest.raises(bemcontact.ProblemError, match="disk"):
+        bemcontact.stress_operator(result, points, body="dusk")
+    model = bemcontact.model(operator.contact)
+    bound = model.stress(operator)
+    model.solve()
+    assert bound.components.value == pytest.approx(stress.components, rel=1e-6, abs=1e-6 * abs(wanted).max())
 
 
 def test_forces_of_contacts_are_not_summed_over_bodies():
