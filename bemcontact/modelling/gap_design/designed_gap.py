@@ -230,7 +230,8 @@ class GapDesign(Leaf):
         """Make a rigid surface of the zone's own and the profile, through the feet of all its contact points.
 
         Its normals are tilted by the slope of the profile, which a contact problem on it sees as a relative change of
-        pressure by about that slope. Tools are at their undisplaced place.
+        pressure by about that slope. Tools are at their undisplaced place. Between two elastic bodies the profile is to
+        be taken off one of them, and this surface is not the other one.
 
         Parameters
         ----------
