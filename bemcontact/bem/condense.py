@@ -311,9 +311,8 @@ def boundary_columns(condensation: Condensation) -> tuple[Array, Array]:
         return displacement, traction
     by_pressure, by_loading = condensation.bond.traction
     held, count = np.hstack([by_loading, by_pressure]), loads + len(body.points)
-    return displacement[..., :count] + displacement[..., count:] @ held, traction[..., :count] + traction[
-        ..., count:
-    ] @ held
+    u, t = (values[..., :count] + values[..., count:] @ held for values in (displacement, traction))
+    return u, t
 
 
 def _pressed(body: Body) -> Iterator[tuple[IntArray, IntArray, IntArray, Array]]:

@@ -102,7 +102,7 @@ class ContactPoints:
     run : (n,) number of the unbroken piece of boundary it is on
     arc_position : (n,) arc length along that piece [L]
     run_length : (runs,) perimeter of a piece that closes on itself, else infinity [L]
-    normals : (n, 2) of the rigid surface, into the body
+    normals : (n, 2) of the rigid surface, into the body; common ones of two elastic bodies, into the first
     faces : (n, 2) normals of the faces of the surface, as in `Faces`
     gap : (n,) ε [L]
     element, local, point : (q,) the (element, local node) pairs that carry the pressure of each point

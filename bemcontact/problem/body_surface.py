@@ -11,6 +11,8 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problem.curves import Curve, Edge, cross
 from bemcontact.problem.edge_places import (
+    CORNER,
+    STEEPEST,
     EdgePlaces,
     NormalWeight,
     bent_joints,
@@ -27,8 +29,6 @@ ON_CORNER = 1e-9
 """Distance from a corner over the extent of the points up to which a point is on it."""
 ROUND_OFF = 1e-9
 """Difference of two fractions of an edge that is none: places on the normal at an end may be on either side of it."""
-CORNER = 1e-6
-"""Sine of the angle between two edges from which their joint is a corner."""
 WIDEST = 2.0
 """Distance of a pair from the nearest place, over that of the point, up to which it is taken: others are elsewhere."""
 
@@ -120,8 +120,8 @@ class BodySurface:
         """Places that form pairs with points (k, 2) [L] of the first side, and the common normals there.
 
         Points are on the common normals of their pairs, so that the forces on both bodies have no moment together.
-        Pairs of a rigid body are the nearest places. A point that has no pair, or is not on the first side, has the
-        nearest place, as a corner.
+        Pairs of a rigid body are the nearest places. A point whose pair is too far away has it as a corner, for the end
+        of a part may be there up to round-off. One without a pair, or beside the first side, so has the nearest place.
         """
         feet = self.feet(points)
         if self.share == 0:
@@ -137,12 +137,13 @@ class BodySurface:
         gap, beside = np.sum((points[at] - places.points) * normals, axis=1), places.points - feet.points[at]
         near = np.hypot(*beside.T) <= WIDEST * (abs(feet.gap[at]) + flush)
         own, other = curvatures(self.first, first)[at], curvatures(self.edges, places)
+        near &= np.sum(first.normals[at] * places.normals, axis=1) < -STEEPEST
         # otherwise common normals cross on the way
         near &= (1 + self.share * own * gap > 0) & (1 + (1 - self.share) * other * gap > 0)
-        at, edge, fraction, foot = at[near], feet.edge.copy(), feet.fraction.copy(), feet.points.copy()
-        edge[at], fraction[at], foot[at] = places.edge[near], places.fraction[near], places.points[near]
+        edge, fraction, foot = feet.edge.copy(), feet.fraction.copy(), feet.points.copy()
+        edge[at], fraction[at], foot[at] = places.edge, places.fraction, places.points
         common, distance, corner = feet.normals.copy(), feet.gap.copy(), np.ones(len(points), bool)
-        common[at], distance[at], corner[at] = normals[near], gap[near], False
+        common[at], distance[at], corner[at] = normals, gap, ~near
         return Feet(edge, fraction, foot, distance, common, corner, feet.at_corner)
 
     @cached_property

@@ -10,7 +10,7 @@ from bemcontact.problem.curves import Edge, cross
 
 STEEPEST = 0.5
 """Cosine of the angle between two boundaries from which they may form pairs: small displacements close no wider one."""
-BENT = 1e-6
+CORNER = 1e-6
 """Sine of the angle between two edges from which their joint is a corner."""
 STEPS = 30
 """Largest number of Newton's steps to a pair."""
@@ -92,7 +92,7 @@ def bent_joints(edges: Sequence[Edge], others: Sequence[Edge]) -> Array:
     for before in edges:
         for after in edges:
             normals = np.concatenate([before.normals(np.ones(1)), after.normals(np.zeros(1))])
-            if before.end == after.start and abs(cross(*normals)) > BENT:
+            if before.end == after.start and abs(cross(*normals)) > CORNER:
                 facing = nearest_on(others, np.array([before.end])).normals
                 if (normals @ facing[0] < -STEEPEST).all():
                     found.append((*before.end, min(before.length, after.length)))
@@ -121,7 +121,7 @@ def paired_on(
         for i in sorted({*edge[rows].tolist()}):
             on = rows[edge[rows] == i]
             fraction[on], met[on] = _on_edge(edges[i], fraction[on], points[on], weighted[on], other_weight)
-            met[on] &= np.sum(own[on] * edges[i].normals(fraction[on]), axis=1) > STEEPEST
+            met[on] &= np.sum(own[on] * edges[i].normals(fraction[on]), axis=1) > 0
     found = places_at(edges, edge[met], fraction[met])
     return found, _common(weighted[met], found.normals, other_weight.at(found.points)), met
 
