@@ -105,3 +105,16 @@ def test_edges_that_cannot_come_to_touch_form_no_pairs():
     bodies = {"up": elastic(DISK), "low": elastic(block((-40, 40), (-9, 0)))}
     (part,) = problem(bodies, accuracy=0.01, touch=["up/rim", "low/top"]).opposite("touch")
     assert (part.low, part.high) == (pytest.approx(7 / 12), pytest.approx(11 / 12))  # 30 degrees below the horizontal
+
+
+@pytest.mark.parametrize("pair", [["up/rim", "low/top"], ["low/top", "up/rim"]])
+def test_pairs_do_not_jump_where_a_part_ends(pair):
+    """A node at the end of a part is beyond it by round-off, and keeps its pair."""
+    bodies = {"up": elastic(DISK), "low": elastic(block((-40, 40), (-9, 0)))}
+    spec = problem(bodies, accuracy=0.01, touch=pair)
+    (part,), surface = spec.opposite("touch"), spec.zones["touch"].surface
+    assert isinstance(surface, BodySurface)
+    for end, way in ((part.low, -1), (part.high, 1)):
+        found = surface.pairs(spec.edge(part.edge).points(end + way * np.array([-1e-9, 1e-9])))
+        assert found.corner.tolist() == [False, True]
+        assert np.abs(np.diff(found.points, axis=0)).max() < 1e-5
