@@ -11,7 +11,7 @@ import numpy as np
 from bemcontact.adaptivity.sizes import Limit, Loop
 from bemcontact.arrays import Array
 from bemcontact.bem.mesh import CORNER
-from bemcontact.problem.body_surface import AnyShape
+from bemcontact.problem.body_surface import AnyShape, BodySurface
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.nearest_places import gaps, nearest_places, surface_corners
 from bemcontact.problem.problem import Problem
@@ -21,6 +21,11 @@ TURN = pi / 6
 """Angle [rad] by which an element may turn."""
 PART = 0.5
 """Largest element over its edge."""
+WALL = 1 / 3
+"""Largest element over the thickness of a wall that is in contact on both of its sides.
+
+Contact on one side shows in the pressure on the other one as a bump that is about as wide as the wall.
+"""
 OPPOSED = -0.3
 """Cosine of the angle between two outward normals below which two parts of the boundary face each other."""
 ACROSS = 0.5
@@ -49,10 +54,12 @@ class SizedOutline:
     ----------
     loops : of the bodies
     bodies : number of the body of each loop
+    touching : names of the edges that may be in contact
     """
 
     loops: tuple[Loop, ...]
     bodies: tuple[int, ...]
+    touching: frozenset[str]
 
     @cached_property
     def _samples(self) -> list[tuple[int, Edge, Array]]:
@@ -75,13 +82,21 @@ class SizedOutline:
             for number, loop in enumerate(self.loops)
         )
 
-    @cached_property
+    @property
     def thickness(self) -> tuple[Array, ...]:
         """Distance [L] from each sample through the body to the boundary that faces it; infinite without one."""
+        return self._walls[0]
+
+    @cached_property
+    def _walls(self) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+        """Thickness at each sample, and whether both sides of this wall may be in contact."""
         x, y = np.vstack([edge.points(at) for _, edge, at in self._samples]).T
         normals = np.vstack([edge.normals(at) for _, edge, at in self._samples])
         body = np.repeat([self.bodies[number] for number, _, _ in self._samples], [len(at) for *_, at in self._samples])
-        least = []
+        touching = np.repeat(
+            [edge.name in self.touching for _, edge, _ in self._samples], [len(at) for *_, at in self._samples]
+        )
+        least, across = [], []
         for few in range(0, len(x), IN_CACHE):
             rows = slice(few, few + IN_CACHE)
             right, up = x[rows, None] - x, y[rows, None] - y
@@ -90,8 +105,12 @@ class SizedOutline:
             faces = (inward > 0) & (inward**2 >= ACROSS**2 * squared) & (normals[rows] @ normals.T < OPPOSED)
             if len({*self.bodies}) > 1:
                 faces &= body[rows, None] == body
-            least.append(np.sqrt(np.where(faces, squared, np.inf).min(axis=1)))
-        return tuple(np.split(np.concatenate(least), np.cumsum([len(own) for own in self.positions])[:-1]))
+            squared[~faces] = np.inf
+            across.append(np.argmin(squared, axis=1))
+            least.append(np.sqrt(squared.min(axis=1)))
+        both = touching & touching[np.concatenate(across)]
+        joints = np.cumsum([len(own) for own in self.positions])[:-1]
+        return tuple(np.split(np.concatenate(least), joints)), tuple(np.split(both, joints))
 
     def thickness_at(self, loop: int, position: float) -> float:
         """Thickness [L] at a position of a loop."""
@@ -104,9 +123,10 @@ class SizedOutline:
         for edge, start, stop in zip(own.edges, own.joints[:-1], own.joints[1:], strict=True):
             yield Limit(low=start, high=stop, size=PART * edge.length)
             yield from _curvature(edge, start)
-        for position, thickness in zip(self.positions[loop], self.thickness[loop], strict=True):
-            if np.isfinite(thickness):
-                yield Limit(low=position, high=position, size=float(thickness))
+        thickness, both = self._walls
+        for position, least, pressed in zip(self.positions[loop], thickness[loop], both[loop], strict=True):
+            if np.isfinite(least):
+                yield Limit(low=position, high=position, size=float(least * WALL if pressed else least))
         known = [*_least_at_joints(own, self.positions[loop], self.thickness[loop])]
         yield from known
 
@@ -114,7 +134,14 @@ class SizedOutline:
 def outline(problem: Problem) -> SizedOutline:
     """The boundary of a problem, whatever its elements are."""
     loops = [(Loop(edges=edges), number) for number, part in enumerate(problem.parts) for edges in part.loops]
-    return SizedOutline(loops=tuple(loop for loop, _ in loops), bodies=tuple(number for _, number in loops))
+    surfaces = [zone.surface for zone in problem.zones.values()]
+    touching = {name for zone in problem.zones for name in problem.edges_of(zone)}
+    touching |= {edge.name for surface in surfaces if isinstance(surface, BodySurface) for edge in surface.edges}
+    return SizedOutline(
+        loops=tuple(loop for loop, _ in loops),
+        bodies=tuple(number for _, number in loops),
+        touching=frozenset(touching),
+    )
 
 
 def _curvature(edge: Edge, start: float) -> Iterator[Limit]:

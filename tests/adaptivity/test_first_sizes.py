@@ -4,6 +4,8 @@ from math import pi, radians, sqrt
 
 import numpy as np
 import pytest
+import several_bodies
+from several_bodies import elastic
 
 from bemcontact.adaptivity.first_sizes import outline, surface_sizes
 from bemcontact.adaptivity.mesh_sizes import first_mesh
@@ -147,3 +149,27 @@ def test_a_corner_halves_the_size():
     limits = np.array([*shape.sizes(0)])
     at = shape.loops[0].size_at(shape.loops[0].joints, limits, ())
     assert (at <= 2.0).all()
+
+
+@pytest.mark.parametrize("names", [("layer", "under"), ("over", "layer")])
+def test_a_wall_that_is_touched_on_both_sides_has_elements_of_a_third_of_it(names: tuple[str, str]):
+    """On the first side of one contact and on the second of the other, and so on the other bodies that follow it."""
+    bodies = {
+        "over": elastic(several_bodies.block((-5, 5), (1, 11)), {"top": {"pressure": 1.0}}),
+        "layer": elastic(several_bodies.block((-5, 5), (0, 1))),
+        "under": elastic(several_bodies.block((-5, 5), (-10, 0)), {"bottom": {"displacement": {"x": 0, "y": 0}}}),
+    }
+    below, above = ["layer/bottom", "under/top"], ["over/bottom", "layer/top"]
+    one, both = (
+        several_bodies.problem(bodies, 0.01, low=below),
+        several_bodies.problem(bodies, 0.01, low=below, high=above),
+    )
+    assert _longest(one, f"{names[0]}/bottom") > 1 / 2
+    for name in (f"{names[0]}/bottom", f"{names[1]}/top"):
+        assert _longest(both, name) <= 1.01 / 3  # thickness is measured between samples
+
+
+def _longest(stated: Problem, edge: str) -> float:
+    """Longest element of an edge on the first mesh [L]."""
+    found = next(item for item in first_mesh(stated).edges if item.name == edge)
+    return float(np.diff(found.breakpoints(1)).max() * found.length)
