@@ -200,9 +200,8 @@ def infinite_starts(field: StressField, pressed: BoolArray) -> BoolArray:
     """
     problem, mesh = field.problem, field.mesh
     slits = [name for name, zone in problem.zones.items() if isinstance(zone.surface, DeflectedContour)]
-    pressed = pressed & ~np.isin(
-        mesh.edge, [mesh.edge_names.index(e) for name in slits for e in problem.edges_of(name)]
-    )
+    of_slits = {edge for name in slits for edge in problem.edges_of(name)}
+    pressed = pressed & ~np.isin(mesh.edge, [i for i, edge in enumerate(mesh.edge_names) if edge in of_slits])
     result = np.zeros(len(mesh.elements), bool)
     for after in np.flatnonzero(~field.smooth).tolist():
         before = int(mesh.before[after])

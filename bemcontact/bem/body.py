@@ -391,7 +391,4 @@ def deflections(problem: Problem, mesh: Mesh) -> dict[str, Array]:
         return {}
     from bemcontact.bem.deflected_contours import deflection
 
-    return {
-        name: deflection(problem, mesh, surface, ("contact_zones", name, "surface"))
-        for name, surface in contours.items()
-    }
+    return {name: deflection(problem, mesh, name, surface) for name, surface in contours.items()}

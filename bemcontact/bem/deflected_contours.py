@@ -16,35 +16,42 @@ from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
 
 
-def deflection(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: KeyPath) -> Array:
-    """Displacement (N, 2) [L] of the nodes under the loads that shape a contour, whose path of keys is given.
+def deflection(problem: Problem, mesh: Mesh, zone: str, surface: DeflectedContour) -> Array:
+    """Displacement (N, 2) [L] of the nodes of the body of a zone under the loads that shape its contour.
 
-    `ProblemError` if the conditions of the contour contradict each other, or leave the body free to move.
+    That of other bodies is zero. `ProblemError` if the conditions of the contour contradict each other, or leave the
+    body free to move.
     """
-    values = _boundary_values(problem, mesh, surface, path)
-    motions = free_rigid_motions(mesh, values.displacement_given)
+    path: KeyPath = ("contact_zones", zone, "surface")
+    body = problem.part_of(problem.edges_of(zone)[0])
+    part, of_part = next(pair for pair in zip(problem.parts, mesh.parts, strict=True) if pair[0].name == body)
+    own = of_part.mesh
+    values = _boundary_values(problem, own, surface, path)
+    motions = free_rigid_motions(own, values.displacement_given)
     if len(motions):
         message = (
             f"with these conditions nothing holds the body against the {' and the '.join(motions.describe())}, for "
             "the contour is computed without contact; prescribe displacements that hold it"
         )
         raise ProblemError(Issue(path=(*path, "conditions"), message=message))
-    (part,) = problem.parts
-    loading = Loading(values=values, particular=particular_solution(surface.loads, part.material, mesh))
+    loading = Loading(values=values, particular=particular_solution(surface.loads, part.material, own))
     system = System(
-        mesh=mesh, material=part.material, points=UnitPressures.none(), motions=motions, loadings=(loading,),
+        mesh=own, material=part.material, points=UnitPressures.none(), motions=motions, loadings=(loading,),
     )  # fmt: skip
-    displacement, _ = system.fields(solve_system(system).combined(np.ones(1)), loading)
+    displacement = np.zeros_like(mesh.nodes)
+    displacement[of_part.nodes], _ = system.fields(solve_system(system).combined(np.ones(1)), loading)
     return displacement
 
 
 def _boundary_values(problem: Problem, mesh: Mesh, surface: DeflectedContour, path: KeyPath) -> BoundaryValues:
     """Spread the conditions of a contour over the mesh; issues of its own conditions get its key path."""
+    conditions = problem.edge_conditions | surface.conditions
     try:
-        return boundary_values(problem.edge_conditions | surface.conditions, mesh)
+        return boundary_values({edge: conditions[edge] for edge in mesh.edge_names if edge in conditions}, mesh)
     except ProblemError as error:
         issues = [
-            replace(item, path=(*path, *item.path)) if item.path[1] in surface.conditions else item
+            replace(item, path=(*path, *item.path) if own else problem.condition_path(item.path))
             for item in error.issues
+            for own in [item.path[1] in surface.conditions]
         ]
         raise ProblemError(issues) from None

@@ -9,7 +9,7 @@ from bemcontact.problem.bodies import SEPARATOR, BodySpec, qualified
 from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.boundary import size_of_edges
 from bemcontact.problem.conditions import Loads
-from bemcontact.problem.contact_zone import RigidTool
+from bemcontact.problem.contact_zone import ContactZone, RigidTool
 from bemcontact.problem.reference import Crack, FlatPunch, ProppedBeam, Reference, ShrinkFit
 from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.stated_bodies import StatedBodies
@@ -102,9 +102,7 @@ def contact_issues(problem: StatedBodies, tools: Mapping[str, RigidTool]) -> Ite
             yield from _pair_issues(problem, contact.between, (*path, "between"))
     yield from _bond_issues(problem)
     for name, zone in problem.contact_zones.items():
-        if isinstance(zone.surface, DeflectedContour):
-            message = "a deflected contour is that of an only body; state this problem without bodies"
-            yield Issue(path=("contact_zones", name, "surface"), message=message)
+        yield from _contour_issues(problem, name, zone, edges)
         for i, edge in enumerate(zone.edges or ()):
             if edge not in edges:
                 yield Issue(path=("contact_zones", name, "edges", i), message=unknown_word("edge", edge, edges))
@@ -118,6 +116,35 @@ def contact_issues(problem: StatedBodies, tools: Mapping[str, RigidTool]) -> Ite
             yield Issue(path=("bodies", name), message=message)
     yield from _case_issues(problem, edges)
     yield from _tool_issues(problem, tools)
+
+
+def _contour_issues(problem: StatedBodies, name: str, zone: ContactZone, edges: Sequence[str]) -> Iterator[Issue]:
+    """Issues of a contour that is not that of one body, which nothing but its own conditions holds."""
+    surface, path = zone.surface, ("contact_zones", name)
+    bodies = sorted({edge.partition(SEPARATOR)[0] for edge in zone.edges or ()})
+    if not isinstance(surface, DeflectedContour) or not {*(zone.edges or ())} <= {*edges}:
+        return
+    if len(bodies) > 1:
+        message = f"a deflected contour is that of one body, and these edges are of {', '.join(bodies)}; make two zones"
+        yield Issue(path=(*path, "edges"), message=message)
+        return
+    (body,) = bodies
+    for bond in problem.bonded:
+        if body in (both := problem.sides_of(bond)):
+            other = both[both[0] == body]
+            message = (
+                f"'{body}' is bonded to '{other}', and a deflected contour is that of a body by itself; give points "
+                "of the surface as a spline instead"
+            )
+            yield Issue(path=(*path, "surface"), message=message)
+    for edge in surface.conditions:
+        if edge not in edges:
+            message = unknown_word("edge", edge, edges)
+        elif edge.partition(SEPARATOR)[0] != body:
+            message = f"'{edge}' is not an edge of '{body}', whose contour this is; remove its condition"
+        else:
+            continue
+        yield KeyIssue(path=(*path, "surface", "conditions", edge), message=message)
 
 
 def _bond_issues(problem: StatedBodies) -> Iterator[Issue]:

@@ -186,13 +186,13 @@ def zone_surfaces(problem: Problem) -> list[tuple[str, str, str]]:
     return [(name, ", ".join(problem.edges_of(name)), surface_in_words(zone.surface)) for name, zone in zones]
 
 
-def deflected_by(surface: DeflectedContour, problem: Problem) -> str:
-    """Conditions and loads that deflect a contour: ``top t_y = -50 kN/cm²``."""
+def deflected_by(zone: str, surface: DeflectedContour, problem: Problem) -> str:
+    """Conditions and loads that deflect the contour of a zone: ``top t_y = -50 kN/cm²``."""
     conditions = [
         f"{name} {', '.join(_conditions(condition, problem.edge(name), problem.units))}"
         for name, condition in surface.conditions.items()
     ]
-    return "; ".join([*conditions, *_volume_loads(surface.loads, problem.parts[0])])
+    return "; ".join([*conditions, *_volume_loads(surface.loads, problem.touching_parts(zone)[0])])
 
 
 def problem_in_words(problem: Problem) -> list[str]:

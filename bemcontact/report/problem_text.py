@@ -39,7 +39,7 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
         add(shown, "Volume load", load)
     for name, zone in problem.zones.items():
         if isinstance(zone.surface, DeflectedContour):
-            add(shown, "Contour", f"of {name}, deflected by {deflected_by(zone.surface, problem)}")
+            add(shown, "Contour", f"of {name}, deflected by {deflected_by(name, zone.surface, problem)}")
     for name, tool in problem.tools.items():
         action = tool_in_words(problem.tool_action(name), units)
         add(shown, "Tool", f"{name}, the surface of {' and '.join(tool.zones)}: {action}")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from several_bodies import elastic, stated
 
 from bemcontact.analysis.solve import condense, solve
 from bemcontact.bem.body import body_of
@@ -139,6 +140,33 @@ def test_contradictions_are_reported_where_they_are_stated(own, kept, path):
     with pytest.raises(ProblemError, match="different displacements") as caught:
         body_of(bar(contour(own), kept))
     assert {issue.path[: len(path)] for issue in caught.value.issues} == {path}
+
+
+def test_a_contour_of_one_of_several_bodies_is_that_of_the_body_by_itself():
+    """A bar on it, of the same elements where they meet, presses the bar onto its contour and does not deflect that."""
+    own, kept = {"top": {"pressure": 0.1}}, {"left": HELD}
+    alone = bar(contour(own), kept)
+    assert alone.boundary is not None
+    edges = alone.boundary.model_dump(exclude_unset=True)["outer"]
+    raised = [{**edge, "start": [edge["start"][0], edge["start"][1] + 1.0]} for edge in edges]
+    raised[0]["elements"] = edges[2]["elements"]
+    several = stated(
+        name="bars",
+        bodies={
+            "over": elastic({"outer": raised}, {"top": {"pressure": 0.4}, "left": HELD}),
+            "bar": {"material": alone.material, "boundary": {"outer": edges}, "conditions": kept},
+        },
+        contacts={"face": {"between": ["over/bottom", "bar/top"]}},
+        contact_zones={"seat": {"edges": "bar/bottom", "surface": contour({"bar/top": own["top"]})}},
+        accuracy=None,
+    )
+    one, both = body_of(alone).points, body_of(several).points
+    assert one.gap.max() > 1e-4
+    of_seat = both.zone == [*several.zones].index("seat")
+    assert both.gap[of_seat] == pytest.approx(one.gap, rel=1e-12)
+    result = solve(several)
+    assert result.certified
+    assert np.isfinite(result.stress(np.array([[1.0, 0.5], [1.0, 1.5]])).von_mises).all()
 
 
 def clamped(depth, **more):

@@ -39,6 +39,11 @@ BETWEEN = "[up/bottom, low/top]"
 COPY = "{copy_of: up, shift: [0, -1], conditions: {bottom: {displacement: {x: 0, y: 0}}}}"
 
 
+def with_contour(edges: str, condition: str, more: str = "") -> str:
+    surface = f"{{kind: deflected_contour, direction: [0, -1], conditions: {{{condition}: {{pressure: 2}}}}}}"
+    return SPEC + f"contact_zones:\n  roof:\n    edges: {edges}\n    surface: {surface}\n{more}"
+
+
 def with_copy(stated: str) -> str:
     return SPEC[: SPEC.index("  low:")] + f"  low: {stated}\ncontacts: {{face: {{between: [up, low]}}}}\n"
 
@@ -64,6 +69,12 @@ MISTAKES = [
     (SPEC + "tools: {ram: {zones: face, force: {y: 1}}}\n", "24:22: tools.ram.zones", "two elastic bodies"),
     (SPEC + "load_cases: {a: {loads: {gravity: {density: 1, acceleration: [0, -1]}}}}\n", "24:18: load_cases.a.loads",
      "load_cases.a.bodies.NAME"),
+    (with_contour("[low/left, up/right]", "low/bottom"), "26:12: contact_zones.roof.edges", "of one body…low, up"),
+    (with_contour("low/left", "low/botom"), "27:73: contact_zones.roof.surface.conditions.low/botom", "low/bottom"),
+    (with_contour("low/left", "up/right"), "27:73: contact_zones.roof.surface.conditions.up/right",
+     "not an edge of 'low'"),
+    (with_contour("low/left", "low/right", "bonded: {glue: [up/right, low/right]}\n"),
+     "27:14: contact_zones.roof.surface", "'low' is bonded to 'up'"),
     (with_copy(COPY.replace("of: up", "of: upp")), "13:18: bodies.low.copy_of", "unknown body 'upp'"),
     (with_copy(COPY.replace("of: up", "of: low")), "13:18: bodies.low.copy_of", "copy of itself"),
     (with_copy("{copy_of: up, shift: [0, -1]}"), "13:18: bodies.low.copy_of", "conditions…state those of 'low'"),
