@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 
 from bemcontact.adaptivity.sizes import Limit, Loop
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.mesh import CORNER
 from bemcontact.problem.body_surface import AnyShape, BodySurface
 from bemcontact.problem.curves import Edge
@@ -88,7 +88,7 @@ class SizedOutline:
         return self._walls[0]
 
     @cached_property
-    def _walls(self) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+    def _walls(self) -> tuple[tuple[Array, ...], tuple[BoolArray, ...]]:
         """Thickness at each sample, and whether both sides of this wall may be in contact."""
         x, y = np.vstack([edge.points(at) for _, edge, at in self._samples]).T
         normals = np.vstack([edge.normals(at) for _, edge, at in self._samples])
