@@ -176,8 +176,14 @@ class SurfaceGaps:
         return Faces(gap + np.sum(normals * moved, axis=-1), normals, lies)
 
     def exact(self, zone: str, moved: Array) -> Closest:
-        """Distance (...) [L] of displaced places (..., 2) from the displaced surface, and the normals there."""
-        return self.undeformed(zone, moved - self.tool_motion(zone, moved))
+        """Distance (...) [L] of displaced places (..., 2) from the displaced surface, and the normals there.
+
+        The place of an elastic body that is nearest then is that to which its motion there leads back.
+        """
+        motion, surface = self.tool_motion(zone, moved), self.surfaces[zone]
+        if isinstance(surface, BodySurface) and surface.elastic:
+            motion = self.tool_motion(zone, moved - motion)
+        return self.undeformed(zone, moved - motion)
 
     def undeformed(self, zone: str, points: Array) -> Closest:
         """Distance (...) [L] of points (..., 2) from the undisplaced surface, and the normals there."""

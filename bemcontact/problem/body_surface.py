@@ -22,13 +22,17 @@ from bemcontact.problem.edge_places import (
 )
 from bemcontact.problem.rigid_surface import RigidSurface, Shape
 from bemcontact.problem.surface_lines import Closest, Faces, between_normals
+from bemcontact.problem.validation import Point
 
 AT_END = 1e-9
 """Sine of the angle between the way to the end of an edge and the normal there from which the end itself is nearest."""
 ON_CORNER = 1e-9
 """Distance from a corner over the extent of the points up to which a point is on it."""
 ROUND_OFF = 1e-9
-"""Difference of two fractions of an edge that is none: places on the normal at an end may be on either side of it."""
+"""Difference of two fractions of an edge that is none: places on the normal at an end may be on either side of it.
+
+Likewise a distance over the length of the longest edge.
+"""
 WIDEST = 2.0
 """Distance of a pair from the nearest place, over that of the point, up to which it is taken: others are elsewhere."""
 
@@ -73,6 +77,7 @@ class BodySurface:
     offset : what is added to the gap as drawn [L]
     share : part that the first side has in common normals, its modulus E / (1 - ν²) over the sum of both
     first : edges of the first side where it has such a part
+    approach : displacement [L] of this body that makes it touch them as drawn; pairs are those after it
     nearest : fractions of curves where they are nearest to it, as far as they were looked for
     """
 
@@ -84,6 +89,7 @@ class BodySurface:
     offset: float = 0.0
     share: float = 0.0
     first: tuple[Edge, ...] = ()
+    approach: Point = (0.0, 0.0)
     nearest: dict[Curve, tuple[float, ...]] = field(default_factory=dict)
 
     @cached_property
@@ -107,11 +113,12 @@ class BodySurface:
         offset, (sums, corners) = points - foot, self._ends
         away = np.hypot(*offset.T)
         corner, at_corner = np.zeros((2, len(points)), bool)
+        flush = ROUND_OFF * max(edge.length for edge in self.edges)
         for end in (0, 1):
             at_corner |= (abs(fraction - end) <= ROUND_OFF) & corners[number, end]
             at = np.flatnonzero((fraction == end) & corners[number, end])
             tilted = abs(cross(offset[at], normals[at])) > AT_END * away[at]
-            at = at[tilted & (away[at] > 0)]
+            at = at[tilted & (away[at] > flush)]
             side = np.where(np.sum(offset[at] * sums[number[at], end], axis=1) < 0, -1.0, 1.0)
             normals[at], corner[at] = side[:, None] * offset[at] / away[at, None], True
         return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner, at_corner)
@@ -123,13 +130,13 @@ class BodySurface:
         Pairs of a rigid body are the nearest places. A point whose pair is too far away has it as a corner, for the end
         of a part may be there up to round-off. One without a pair, or beside the first side, so has the nearest place.
         """
-        feet = self.feet(points)
         if self.share == 0:
-            return feet
-        points = np.asarray(points, float)
-        first = nearest_on(self.first, points)
+            return self.feet(points)
+        moved, points = np.array(self.approach), np.asarray(points, float)
+        first, points = nearest_on(self.first, points), points - moved
+        feet = self.feet(points)
         flush = ROUND_OFF * max(edge.length for edge in (*self.first, *self.edges))
-        on_first = np.hypot(*(points - first.points).T) <= flush
+        on_first = np.hypot(*(points + moved - first.points).T) <= flush
         at = np.flatnonzero(on_first & (np.sum(first.normals * feet.normals, axis=1) < 0))
         nearest = EdgePlaces(feet.edge[at], feet.fraction[at], feet.points[at], feet.normals[at])
         places, normals, paired = paired_on(self.edges, nearest, points[at], -first.normals[at], self._weights)
@@ -144,13 +151,14 @@ class BodySurface:
         edge[at], fraction[at], foot[at] = places.edge, places.fraction, places.points
         common, distance, corner = feet.normals.copy(), feet.gap.copy(), np.ones(len(points), bool)
         common[at], distance[at], corner[at] = normals, gap, ~near
-        return Feet(edge, fraction, foot, distance, common, corner, feet.at_corner)
+        return Feet(edge, fraction, foot, distance + common @ moved, common, corner, feet.at_corner)
 
     @cached_property
     def _weights(self) -> tuple[NormalWeight, NormalWeight]:
-        """Weights of the normals of both sides in common ones."""
+        """Weights of the normals of both sides in common ones, the first one moved towards this body as it is drawn."""
+        own = bent_joints(self.first, self.edges) - np.array([*self.approach, 0.0])
         return (
-            NormalWeight(self.share, bent_joints(self.first, self.edges)),
+            NormalWeight(self.share, own),
             NormalWeight(1 - self.share, bent_joints(self.edges, self.first)),
         )
 

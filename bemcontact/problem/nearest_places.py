@@ -1,6 +1,6 @@
 """Where an edge of the body is nearest to a rigid surface."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.problem.body_surface import AnyShape, AnySurface, BodySurface
 from bemcontact.problem.curves import Curve, Edge
+from bemcontact.problem.edge_places import STEEPEST
 from bemcontact.problem.surface_lines import Polyline
 from bemcontact.problem.validation import Point
 from bemcontact.problem.visibility import turned_to
@@ -20,6 +21,16 @@ ACCURACY = 1e-7
 """Accuracy of a place, over the length of the edge."""
 AT_END = 1e-6
 """Distance over the length of an edge up to which a place is an end of it."""
+FEW = 200
+"""Samples of an edge in the search for the places that are as near as the nearest one."""
+FLUSH = 1e-9
+"""Distance over the extent of the edges up to which another body touches."""
+AS_NEAR = 1e-3
+"""Part of the least gap by which that of a place may be larger, for the place to be as near."""
+APART = 0.2
+"""Ratio of the singular values of normals from which these have two directions."""
+NEARLY = 0.01
+"""Part of the least gap that may be left at such a place."""
 
 
 def nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
@@ -50,6 +61,29 @@ def _nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
 def gaps(curve: Curve, surface: AnyShape, fractions: Array) -> Array:
     """Initial gap [L] at fractions of the length of an edge, of any shape; beyond its ends that of the ends."""
     return surface.closest(curve.at(np.clip(fractions, 0, 1).ravel())).gap.reshape(fractions.shape)
+
+
+def approach(edges: Sequence[Edge], surface: BodySurface) -> Point:
+    """Displacement [L] of another body that makes it touch edges where it is nearest as drawn.
+
+    It is zero where it touches already, and where no displacement makes it touch at all places that are as near: a pin
+    that is drawn in the middle of its hole may come to touch anywhere.
+    """
+    at = [np.concatenate([np.linspace(0, 1, FEW + 1), nearest_places(edge.curve, surface)]) for edge in edges]
+    points = np.vstack([edge.points(own) for edge, own in zip(edges, at, strict=True)])
+    outward = np.vstack([edge.normals(own) for edge, own in zip(edges, at, strict=True)])
+    feet = surface.feet(points)
+    facing = (np.sum(outward * feet.normals, axis=1) < -STEEPEST) & ((feet.gap > 0) | ~feet.corner)
+    gap, normals = feet.gap[facing], feet.normals[facing]
+    least = float(gap.min(initial=np.inf))
+    if not FLUSH * np.ptp(points, axis=0).max() < abs(least) < np.inf:
+        return 0.0, 0.0
+    near = gap <= least + AS_NEAR * abs(least)
+    moved, _, _, values = np.linalg.lstsq(normals[near], gap[near])
+    if values[-1] < APART * values[0]:
+        moved = least * normals[gap.argmin()]
+    touches = abs(normals[near] @ moved - gap[near]).max() <= NEARLY * abs(least)
+    return (float(moved[0]), float(moved[1])) if touches else (0.0, 0.0)
 
 
 class SurfaceCorner(NamedTuple):

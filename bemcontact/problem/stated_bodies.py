@@ -27,6 +27,7 @@ from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import Edge
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.material import Material
+from bemcontact.problem.nearest_places import approach
 from bemcontact.problem.pairing import OppositePart, opposite_parts
 from bemcontact.problem.units import Units
 from bemcontact.problem.validation import Name, SpecModel, Text, Title, left_out
@@ -219,7 +220,7 @@ class StatedBodies(SpecModel):
         if elastic:
             moduli = [self._material(_body_in(side)).contact_modulus for side in (first, second)]
             own = tuple(edge for edge in self.edges if edge.name in edges)
-            surface = replace(surface, share=moduli[0] / sum(moduli), first=own)
+            surface = replace(surface, share=moduli[0] / sum(moduli), first=own, approach=approach(own, surface))
         return BodyZone(edges=edges, surface=surface)
 
     def opposite_edges(self, contact: str) -> tuple[str, ...]:

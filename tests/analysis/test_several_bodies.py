@@ -106,17 +106,18 @@ def test_a_rigid_outline_is_the_surface_with_the_same_shape(outline, surface, mo
     assert np.abs(pressures[0] - pressures[1]).max() < 1e-10 * pressures[1].max()
 
 
-def roller(start=-90.0, *, modulus=500.0, exchanged=False, turn=0.0, scale=1.0):
-    """A half disk that is pressed on a block."""
+def roller(start=-90.0, *, modulus=500.0, exchanged=False, turn=0.0, scale=1.0, lift=0.0):
+    """A half disk that is pressed on a block, and may be drawn above it."""
     c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
 
     def at(x, y):
         return [scale * (c * x - s * y), scale * (s * x + c * y)]
 
+    y = 4 + lift
     disk = [
-        {"name": "under", "kind": "arc", "start": at(-4, 4), "end": at(4, 4), "center": at(0, 4), "elements": 40},
-        {"name": "side", "end": at(4, 5), "elements": 3},
-        {"name": "top", "end": at(-4, 5), "elements": 6},
+        {"name": "under", "kind": "arc", "start": at(-4, y), "end": at(4, y), "center": at(0, y), "elements": 40},
+        {"name": "side", "end": at(4, y + 1), "elements": 3},
+        {"name": "top", "end": at(-4, y + 1), "elements": 6},
         {"name": "other side", "elements": 3},
     ]
     corners = [(-6, -6), (6, -6), (6, 0), (-6, 0)]
@@ -135,6 +136,14 @@ def roller(start=-90.0, *, modulus=500.0, exchanged=False, turn=0.0, scale=1.0):
 @pytest.mark.parametrize(("turn", "scale"), [(30.0, 1.0), (90.0, 1e3), (217.0, 1e-3)])
 def test_turned_bodies_of_other_size_have_the_same_pressures(turn, scale):
     one, other = (bemcontact.solve(item).solution.pressure for item in (roller(), roller(turn=turn, scale=scale)))
+    assert np.abs(one - other).max() < 1e-9 * one.max()
+
+
+@pytest.mark.parametrize("exchanged", [False, True])
+@pytest.mark.parametrize("lift", [-1.0, 0.5, 2.0])
+def test_how_far_from_each_other_bodies_are_drawn_does_not_matter(lift, exchanged):
+    """The load brings them together, and pairs are those of bodies that touch."""
+    one, other = (bemcontact.solve(roller(exchanged=exchanged, lift=by)).solution.pressure for by in (0.0, lift))
     assert np.abs(one - other).max() < 1e-9 * one.max()
 
 
