@@ -133,6 +133,8 @@ def echelon(basis: Array) -> Array:
 
 UNSEEN = 1e-9
 """Largest normal displacement at contact points, relative to the motion's own, that counts as zero."""
+MIDDLE = 0.1
+"""Distance over the radius up to which a point is the middle of a body."""
 BODY = "the body"
 """Name of an only body in sentences."""
 
@@ -388,10 +390,18 @@ def _to_points(levers: Array, radius: float) -> Array:
 
 
 def _split(basis: Array, motions: Array) -> tuple[Array, Array]:
-    """Separate motions (k, components) that move contact points from those that move none."""
+    """Separate motions (k, components) that move contact points from those that move none.
+
+    Where a body spins about its middle without moving any, as a disk does, the former have no part of this spin.
+    """
     values, vectors = _short_svd(basis @ motions.T)
-    unseen = values <= UNSEEN * np.sqrt(len(basis))
-    return echelon(vectors[~unseen] @ motions), echelon(vectors[unseen] @ motions)
+    moves_none = values <= UNSEEN * np.sqrt(len(basis))
+    seen, unseen = echelon(vectors[~moves_none] @ motions), echelon(vectors[moves_none] @ motions)
+    for row in unseen:
+        turn = 2 + 3 * int(abs(row[2::3]).argmax())
+        if abs(np.delete(row, turn)).max() <= MIDDLE * abs(row[turn]):
+            seen = echelon(seen - np.outer(seen[:, turn] / row[turn], row))
+    return seen, unseen
 
 
 def _null_vectors(matrix: Array) -> Array:

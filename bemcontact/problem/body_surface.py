@@ -66,7 +66,8 @@ class BodySurface:
 
     Between two elastic bodies, gap and pressure count along a common normal. Where the bodies meet, both are deformed:
     each turns its boundary in proportion to its compliance. So the normal that they come to have is between those of
-    both, nearer to that of the stiffer one. It stays the same if the sides are exchanged.
+    both, nearer to that of the stiffer one. It stays the same if the sides are exchanged. A body that may spin, such as
+    a roller, has its own normals, so that no pressure spins it.
 
     Parameters
     ----------
@@ -75,7 +76,8 @@ class BodySurface:
     edges : that may be touched, with their names in the problem
     loops : all loops of the body
     offset : what is added to the gap as drawn [L]
-    share : part that the first side has in common normals, its modulus E / (1 - ν²) over the sum of both
+    share : part that the first side has in common normals: its modulus E / (1 - ν²) over the sum of both, 1 if it may
+        spin, and 0 if this body may
     first : edges of the first side where it has such a part
     approach : displacement [L] of this body that makes it touch them as drawn; pairs are those after it
     nearest : fractions of curves where they are nearest to it, as far as they were looked for
@@ -130,7 +132,7 @@ class BodySurface:
         Pairs of a rigid body are the nearest places. A point whose pair is too far away has it as a corner, for the end
         of a part may be there up to round-off. One without a pair, or beside the first side, so has the nearest place.
         """
-        if self.share == 0:
+        if not self.first:
             return self.feet(points)
         moved, points = np.array(self.approach), np.asarray(points, float)
         first, points = nearest_on(self.first, points), points - moved

@@ -24,7 +24,7 @@ from bemcontact.problem.body_surface import BodySurface, BodyZone
 from bemcontact.problem.boundary import Boundary, size_of_edges
 from bemcontact.problem.conditions import Condition, Loads
 from bemcontact.problem.contact_zone import ContactZone
-from bemcontact.problem.curves import Edge
+from bemcontact.problem.curves import CircularArc, Edge
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.material import Material
 from bemcontact.problem.nearest_places import approach
@@ -36,6 +36,9 @@ from bemcontact.problem.wording import unknown_word
 
 REACH = 0.03
 """Part of the size of the smaller of two whole bodies up to which gaps may close: a larger strain is not small."""
+
+CONCENTRIC = 1e-9
+"""Distance of two centers over the radius up to which they are one."""
 
 
 class StatedBodies(SpecModel):
@@ -218,10 +221,47 @@ class StatedBodies(SpecModel):
             lines = [edge for loop in named_loops(self.boundary_of(own), own) for edge in loop]
             edges = tuple(name for name in edges_that_see(lines, surface) if name not in self._held_edges())
         if elastic:
-            moduli = [self._material(_body_in(side)).contact_modulus for side in (first, second)]
             own = tuple(edge for edge in self.edges if edge.name in edges)
-            surface = replace(surface, share=moduli[0] / sum(moduli), first=own, approach=approach(own, surface))
+            share = self._share_of_first(_body_in(first), body)
+            surface = replace(surface, share=share, first=own, approach=approach(own, surface))
         return BodyZone(edges=edges, surface=surface)
+
+    def _share_of_first(self, first: str, second: str) -> float:
+        """Part that the first of two elastic bodies has in common normals.
+
+        Where a body may spin, all normals are its own: pressure on it passes through its center, and holds no spin. Of
+        two such bodies the smaller one has them.
+        """
+        radii = self._spinning_radius(first), self._spinning_radius(second)
+        if radii[0] != radii[1]:
+            return float(radii[0] < radii[1])
+        moduli = [self._material(name).contact_modulus for name in (first, second)]
+        return moduli[0] / sum(moduli)
+
+    def _spinning_radius(self, body: str) -> float:
+        """Radius [L] of a body that is not held and may touch with circles about one point only; else infinite."""
+        contacts, bonds = ([*pairs] for pairs in ((c.between for c in self.contacts.values()), self.bonded.values()))
+        sides = [side for pair in contacts for side in pair if _body_in(side) == body]
+        bonded = any(_body_in(side) == body for pair in bonds for side in pair)
+        held = any(condition.displacement.given for condition in self.bodies[body].conditions.values())
+        held |= any(
+            condition.displacement.given and self.part_of(edge) == body
+            for case in self.load_cases.values()
+            for edge, condition in case.conditions.items()
+        )
+        zones = {edge for zone in self.contact_zones.values() for edge in zone.edges or (body,)}
+        touching = {name for side in sides for name in side} | zones
+        loops = [
+            loop
+            for loop in named_loops(self.boundary_of(body), body)
+            if body in touching or any(edge.name in touching for edge in loop)
+        ]
+        curves = [edge.curve for loop in loops for edge in loop]
+        arcs = [curve for curve in curves if isinstance(curve, CircularArc)]
+        if held or bonded or not arcs or len(arcs) < len(curves):
+            return np.inf
+        radius = max(max(arc.radii) for arc in arcs)
+        return radius if np.ptp([arc.center for arc in arcs], axis=0).max() <= CONCENTRIC * radius else np.inf
 
     def opposite_edges(self, contact: str) -> tuple[str, ...]:
         """Names of the edges of the second elastic body of a contact that the first one may touch; none of others."""

@@ -299,6 +299,24 @@ def test_a_path_of_the_gap_between_two_bodies_ends_as_a_solve_does():
     assert np.abs(path.path.at(1.0).pressure - end.solution.pressure).max() < 1e-10 * end.solution.pressure.max()
 
 
+@pytest.mark.parametrize("exchanged", [False, True])
+@pytest.mark.parametrize("modulus", [1e3, 1e7])
+def test_nothing_spins_a_disk_without_friction(modulus, exchanged):
+    """Between blocks that do not have their middles at its center; their pressures all pass through the center."""
+    disk = {"name": "rim", "kind": "arc", "center": [0, 2], "radius": 2, "angles": [90, 450]}
+    bodies = {
+        "disk": elastic({"outer": [disk]}, modulus=modulus),
+        "base": elastic(block((-2, 4), (-3, 0)), HELD, 1500.0),
+        "lid": elastic(block((-1, 5), (4, 6)), {"top": {"displacement": {"x": 0, "y": -0.02}}}, 1500.0),
+    }
+    sides = {"low": ["disk/rim", "base/top"], "high": ["disk/rim", "lid/bottom"]}
+    result = solved(bodies, 0.02, **{name: pair[::-1] if exchanged else pair for name, pair in sides.items()})
+    assert result.certified
+    assert any("rotation counterclockwise about (0, 2)" in note and "held at zero" in note for note in result.notes)
+    for name, (x, y) in result.footprint.forces.items():
+        assert result.footprint.moments[name] == pytest.approx(-2 * x, abs=1e-9 * abs(y))
+
+
 def test_three_bodies_that_meet_in_one_point():
     """Two blocks side by side on a base: forces are those of the loads, and corners are looked at in pairs."""
     side = {"pressure": 0.3}
