@@ -52,7 +52,7 @@ Measure = Callable[[Stress], Array]
 
 
 def largest_stresses(body: BodyStress, whole: FilledBody, pressed: BoolArray) -> LargestStresses:
-    """Look for the largest stresses; `pressed` (m,) are the elements that touch."""
+    """Look for the largest stresses; `pressed` (zones, m) are the elements that touch in each zone."""
     problem, mesh = body.field.problem, body.field.mesh
     mirrors = np.zeros(len(mesh.elements), bool)
     for line in body.field.lines:
@@ -67,12 +67,12 @@ def largest_stresses(body: BodyStress, whole: FilledBody, pressed: BoolArray) ->
         return peak
 
     zones = {}
-    for zone in problem.zones:
+    for zone, touching in zip(problem.zones, pressed, strict=True):
         sides = {*problem.edges_of(zone), *problem.opposite_edges(zone)}.intersection(mesh.edge_names)
         if not sides:
             continue
         own = np.isin(mesh.edge, [mesh.edge_names.index(edge) for edge in sides])
-        zones[zone] = inside(SHEAR_BELOW.format(zone), pressed & own, own, lambda stress: stress.max_shear)
+        zones[zone] = inside(SHEAR_BELOW.format(zone), touching & own, own, lambda stress: stress.max_shear)
     within = inside(INSIDE, np.full(len(mesh.elements), True), ~mirrors, lambda stress: stress.von_mises)
     free = [mesh.edge_names[i] for i in np.unique(mesh.edge[~mirrors])]
     peaks = ((edge, body.edge_peak(edge, von_mises=True)) for edge in free)

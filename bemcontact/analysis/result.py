@@ -186,10 +186,10 @@ class Result(Recorded):
         """The stress in all bodies; `ProblemError` without a boundary."""
         from bemcontact.analysis.stress_of_bodies import StressOfBodies
 
-        pressure, _ = self.contact_fields()
+        pressed = self._fields_by_zone()[0][:, :, 1] > 0
         assert self.problem is not None
         assert self.boundary is not None
-        return StressOfBodies.of(self.problem, self.boundary, pressure[:, 1] > 0, self.accuracy.infinite_places)
+        return StressOfBodies.of(self.problem, self.boundary, pressed, self.accuracy.infinite_places)
 
     @one_thread
     def stress(self, points: ArrayLike, body: str | None = None) -> Stress:
@@ -284,11 +284,19 @@ class Result(Recorded):
         ProblemError
             The result is that of a condensed problem, which has no boundary.
         """
+        pressures, gaps = self._fields_by_zone()
+        order = np.where(np.isnan(gaps), -np.inf, pressures), np.where(np.isnan(gaps), -np.inf, -gaps)
+        first = np.lexsort(order[::-1], axis=0)[-1:]
+        pressure, gap = (np.take_along_axis(values, first, axis=0)[0] for values in (pressures, gaps))
+        return pressure, gap
+
+    def _fields_by_zone(self) -> tuple[Array, Array]:
+        """Pressure (zones, m, 3) [p] and gap (zones, m, 3) [L] as of `contact_fields`, in each zone."""
         contact, problem, boundary = self.contact, self.problem, self.boundary
         if problem is None or boundary is None:
             raise ProblemError("the result of a condensed problem has no boundary; solve the problem itself")
-        gaps = contact.initial_gap + self.solution.displacement
-        pressure, gap = np.zeros(boundary.points.shape[:2]), np.full(boundary.points.shape[:2], np.nan)
+        gaps, shape = contact.initial_gap + self.solution.displacement, boundary.points.shape[:2]
+        pressure, gap = (np.full((len(contact.zone_names), *shape), value) for value in (0.0, np.nan))
         for number, name in enumerate(contact.zone_names):
             edges = [boundary.edge_names.index(edge) for edge in problem.edges_of(name)]
             own = np.flatnonzero(contact.zone == number)
@@ -299,9 +307,8 @@ class Result(Recorded):
                 run = contact.run[at[places[1]]] if places[1] in at else -1
                 for local, place in enumerate(places):
                     if (i := on_run.get((run, *place), at.get(place))) is not None:
-                        here = self.solution.pressure[i], -gaps[i]
-                        if not here < (pressure[element, local], -gap[element, local]):
-                            pressure[element, local], gap[element, local] = here[0], gaps[i]
+                        here = self.solution.pressure[i], gaps[i]
+                        pressure[number, element, local], gap[number, element, local] = here
         return pressure, gap
 
     @property

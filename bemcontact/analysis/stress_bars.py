@@ -69,7 +69,7 @@ def _max_shear(stress: Stress) -> Array:
 def _on_mesh(problem: Problem, infinite: list[Pair]) -> StressOfBodies:
     """The stress of a problem on its mesh; `SolverError` without a contact state."""
     answer = solved(problem).answers[0]
-    return StressOfBodies.of(problem, answer.state, answer.pressure.sum(axis=0)[:, 1] > 0, infinite)
+    return StressOfBodies.of(problem, answer.state, answer.pressure[:, :, 1] > 0, infinite)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

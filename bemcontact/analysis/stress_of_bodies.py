@@ -36,7 +36,7 @@ class StressOfBodies:
     Parameters
     ----------
     bodies : of each elastic body
-    pressed : (m,) of each, which elements touch
+    pressed : (zones, m) of each, which elements touch in which zone
     """
 
     bodies: tuple[BodyStress, ...]
@@ -46,18 +46,19 @@ class StressOfBodies:
     def of(cls, problem: Problem, boundary: BoundaryState, pressed: BoolArray, infinite: Sequence[Pair]) -> Self:
         """Read the boundary of a problem on its mesh.
 
-        `pressed` (m,) are the elements that touch; at the places `infinite`, pressure is known to be so.
+        `pressed` (zones, m) are the elements that touch in each zone. Pressure is known to be infinite at the places
+        `infinite`.
         """
         mesh = build(problem)
-        touching, places = _on_both_sides(mesh, pressed, infinite)
+        touching, places = _on_both_sides(mesh, [*problem.zones], pressed, infinite)
         bodies = [
             BodyStress.of(
                 problem, number, part.mesh, boundary.displacement[part.elements], boundary.traction[part.elements],
-                touching[part.elements], places,
+                touching[:, part.elements].any(axis=0), places,
             )
             for number, part in enumerate(mesh.parts)
         ]  # fmt: skip
-        return cls(bodies=tuple(bodies), pressed=tuple(touching[part.elements] for part in mesh.parts))
+        return cls(bodies=tuple(bodies), pressed=tuple(touching[:, part.elements] for part in mesh.parts))
 
     @property
     def edges(self) -> tuple[str, ...]:
@@ -180,12 +181,16 @@ def owners(placed: Sequence[Located]) -> IntArray:
     return np.where(inside.any(axis=0), inside.argmax(axis=0), (~outside).argmax(axis=0))
 
 
-def _on_both_sides(mesh: Mesh, pressed: BoolArray, infinite: Sequence[Pair]) -> tuple[BoolArray, Array]:
-    """Which elements (m,) touch, those of the second bodies included, and places of infinite pressure on both sides."""
+def _on_both_sides(
+    mesh: Mesh, zones: Sequence[str], pressed: BoolArray, infinite: Sequence[Pair]
+) -> tuple[BoolArray, Array]:
+    """Elements (zones, m) that touch, those of the second bodies included, and infinite pressures on both sides."""
     touching, places = pressed.copy(), [np.reshape(np.array(infinite, float), (-1, 2))]
-    for facing in mesh.facing.values():
+    for name, facing in mesh.facing.items():
         own = np.flatnonzero(facing >= 0)
-        touching[facing[own[pressed[own]]]] = True
+        if name in zones:
+            zone = zones.index(name)
+            touching[zone, facing[own[pressed[zone, own]]]] = True
         for local in (0, 2):
             at = mesh.nodes[mesh.elements[own, local]]
             away = np.hypot(*np.moveaxis(at[:, None] - places[0], 2, 0))

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import several_bodies
 from indented_blocks import block, indented
 from scipy.spatial import KDTree
 
@@ -229,3 +230,35 @@ def test_dense_grid_has_no_larger_maximum(hole: tuple[float, float, float], radi
     else:
         assert peak is None
         assert largest.missing["shear below foot"] is NoPeak.TO_BOUNDARY
+
+
+def test_each_contact_of_a_roller_has_its_own_largest_shear():
+    """Below each is Hertz's, 0.3003 of its own peak, within 1 %; a third contact is open. The rim is one edge."""
+    guided = {"displacement": {"x": 0}}
+    half = [
+        {"name": "rim", "kind": "arc", "center": [0, 10], "radius": 10, "angles": [-90, 90]},
+        {"name": "axis"},
+    ]
+    fixed = {"bottom": {"displacement": {"y": 0}}, "left": guided}
+    bodies = {
+        "low": several_bodies.elastic(several_bodies.block((0, 20), (-20, 0)), fixed, 2.1e5),
+        "roller": several_bodies.elastic({"outer": half}, {"axis": guided}, 2.1e5),
+        "high": several_bodies.elastic(
+            several_bodies.block((0, 15), (20, 35)), {"top": {"pressure": 10.0}, "left": guided}, 2.1e4
+        ),
+        "beside": several_bodies.elastic(
+            several_bodies.block((10.1, 20.1), (5, 15)), {"right": {"displacement": {"x": 0, "y": 0}}}, 2.1e4
+        ),
+    }
+    contacts = {
+        name: ["roller/rim", f"{name}/{edge}"]
+        for name, edge in (("low", "top"), ("high", "bottom"), ("beside", "left"))
+    }
+    result = bemcontact.solve(several_bodies.problem(bodies, 0.03, **contacts))
+    pressure, largest = result.solution.pressure, result.largest_stresses()
+    for zone in ("low", "high"):
+        peak = pressure[result.contact.zone == result.contact.zone_names.index(zone)].max()
+        assert largest.shear[zone].value == pytest.approx(HERTZ[0] * peak, rel=1e-2)
+    assert largest.shear["low"].value > 2 * largest.shear["high"].value
+    assert largest.shear["beside"] is None
+    assert largest.missing["shear below beside"] is NoPeak.NO_CONTACT
