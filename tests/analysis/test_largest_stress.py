@@ -233,7 +233,7 @@ def test_dense_grid_has_no_larger_maximum(hole: tuple[float, float, float], radi
 
 
 def test_each_contact_of_a_roller_has_its_own_largest_shear():
-    """Below each is Hertz's, 0.3003 of its own peak, within 1 %; a third contact is open. The rim is one edge."""
+    """Below each is Hertz's within 1 %; a third contact is open. The rim is one edge."""
     guided = {"displacement": {"x": 0}}
     half = [
         {"name": "rim", "kind": "arc", "center": [0, 10], "radius": 10, "angles": [-90, 90]},
@@ -254,10 +254,11 @@ def test_each_contact_of_a_roller_has_its_own_largest_shear():
         name: ["roller/rim", f"{name}/{edge}"]
         for name, edge in (("low", "top"), ("high", "bottom"), ("beside", "left"))
     }
-    result = bemcontact.solve(several_bodies.problem(bodies, 0.03, **contacts))
-    pressure, largest = result.solution.pressure, result.largest_stresses()
-    for zone in ("low", "high"):
-        peak = pressure[result.contact.zone == result.contact.zone_names.index(zone)].max()
+    result = bemcontact.solve(several_bodies.problem(bodies, 0.01, **contacts))
+    largest = result.largest_stresses()
+    for zone, modulus in (("low", 2.1e5), ("high", 2.1e4)):
+        effective = 1 / (0.91 / 2.1e5 + 0.91 / modulus)
+        peak = np.sqrt(2 * 15 * 10.0 * effective / (np.pi * 10))
         assert largest.shear[zone].value == pytest.approx(HERTZ[0] * peak, rel=1e-2)
     assert largest.shear["low"].value > 2 * largest.shear["high"].value
     assert largest.shear["beside"] is None
