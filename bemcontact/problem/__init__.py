@@ -30,6 +30,7 @@ from bemcontact.problem.problem import Problem as Problem
 from bemcontact.problem.reference import Crack as Crack
 from bemcontact.problem.reference import FlatPunch as FlatPunch
 from bemcontact.problem.reference import Hertz as Hertz
+from bemcontact.problem.reference import PinInHole as PinInHole
 from bemcontact.problem.reference import ProppedBeam as ProppedBeam
 from bemcontact.problem.reference import Reference as Reference
 from bemcontact.problem.reference import ShrinkFit as ShrinkFit

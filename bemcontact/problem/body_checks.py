@@ -10,11 +10,12 @@ from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.boundary import size_of_edges
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.contact_zone import ContactZone, RigidTool
-from bemcontact.problem.reference import Crack, FlatPunch, ProppedBeam, Reference, ShrinkFit
+from bemcontact.problem.pin_and_hole import described_sides, pin_and_hole
+from bemcontact.problem.reference import Crack, FlatPunch, PinInHole, ProppedBeam, Reference, ShrinkFit
 from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.stated_bodies import StatedBodies
 from bemcontact.problem.validation import KeyIssue
-from bemcontact.problem.wording import unknown_word
+from bemcontact.problem.wording import exact, unknown_word
 
 COINCIDE = 1e-6
 """Distance of bonded edges over the size of the bodies that is round-off of coordinates."""
@@ -296,7 +297,7 @@ def _distance(problem: StatedBodies, bond: str) -> float | None:
 
 
 def closed_form_issues(problem: StatedBodies, references: Mapping[str, Reference]) -> Iterator[Issue]:
-    """Issues of closed forms of one elastic body that are stated for contact of two."""
+    """Issues of closed forms of one elastic body that are stated for contact of two, and of pins that are none."""
     for name, reference in references.items():
         zones = [*problem.zones] if reference.zone is None else [reference.zone]
         pairs = [parts for parts in map(problem.touching_parts, zones) if len(parts) > 1]
@@ -304,9 +305,16 @@ def closed_form_issues(problem: StatedBodies, references: Mapping[str, Reference
             both = " and ".join(f"'{part.name}'" for part in pairs[0])
             message = (
                 f"{reference.kind} is a closed form of one elastic body, and {both} are both elastic; state hertz, "
-                "uniform, values or table, or the zone of a rigid surface"
+                "pin_in_hole, uniform, values or table, or the zone of a rigid surface"
             )
             yield Issue(path=("reference", name, "kind"), message=message)
+        if isinstance(reference, PinInHole) and not pin_and_hole(problem, zones[0], reference):
+            radius, clearance = exact(reference.radius), exact(reference.clearance)
+            message = (
+                f"'{zones[0]}' is no contact of a pin of radius {radius} with a hole that is wider by {clearance}; its "
+                f"sides are {described_sides(problem, zones[0])}; correct radius and clearance, or name another zone"
+            )
+            yield Issue(path=("reference", name, "radius"), message=message)
 
 
 def inside_issues(problem: StatedBodies) -> Iterator[Issue]:

@@ -194,7 +194,7 @@ def _needs_one_zone(reference: RawValue) -> bool:
     """Whether a reference is about a single contact zone."""
     kind, against = (reference.below(Table, key).value for key in ("kind", "against"))
     half_width = reference.below(Values, "half_width").value is not None and kind == "values"
-    return kind in ("hertz", "flat_punch", "crack", "propped_beam") or against == "arc" or half_width
+    return kind in ("hertz", "flat_punch", "pin_in_hole", "crack", "propped_beam") or against == "arc" or half_width
 
 
 def mesh_issues(boundary: Boundary, path: KeyPath, refine: int) -> list[Issue]:

@@ -138,6 +138,8 @@ class Problem(StatedBodies):
         several = bool(raw.below(cls, "bodies").value)
         if not several:
             issues += cls._mismatches(raw)
+            if problem is not None and not issues:
+                issues += closed_form_issues(problem, problem.reference)
         elif problem is not None:
             issues += problem._mismatches_of_bodies()
         if problem is not None and not issues:

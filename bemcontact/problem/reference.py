@@ -169,6 +169,26 @@ class ShrinkFit(ReferenceBase):
         return value
 
 
+class PinInHole(ReferenceBase):
+    """A round pin in the round hole of a large plate, over any angle of contact; either of them may be rigid."""
+
+    example: ClassVar[str] = "{kind: pin_in_hole, load: 540, radius: 10, clearance: 0.02}"
+
+    kind: Literal["pin_in_hole"] = "pin_in_hole"
+    """The closed form: pin_in_hole."""
+    load: Positive
+    """The force per thickness on the whole pin, at its center or spread over its volume, even if only half of it is
+    modeled."""
+    radius: Positive
+    """The radius of the pin."""
+    clearance: Positive
+    """The radius of the hole minus that of the pin, plus the gap that the contact states."""
+    center: Point | None = None
+    """The middle of the contact [x, y]; if left out, the point with the smallest initial gap."""
+    half: Flag = False
+    """Whether only half of the contact is modeled, up to a line of symmetry through its middle."""
+
+
 class Uniform(ReferenceBase):
     """A uniform pressure, such as under a block between planes."""
 
@@ -302,7 +322,7 @@ class Table(_PositionedReference):
                 yield Issue(path=("pressure", after, 0), message=message)
 
 
-Reference = Hertz | FlatPunch | ShrinkFit | Uniform | Crack | ProppedBeam | Values | Table
+Reference = Hertz | FlatPunch | ShrinkFit | PinInHole | Uniform | Crack | ProppedBeam | Values | Table
 """A reference of any kind."""
 ReferenceSpec = Annotated[Reference, TaggedUnion(what="a reference", members=get_args(Reference))]
 """A reference whose class is chosen by the key `kind`."""

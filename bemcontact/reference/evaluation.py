@@ -14,6 +14,8 @@ from bemcontact.problem import (
     Crack,
     FlatPunch,
     Hertz,
+    Part,
+    PinInHole,
     Problem,
     ProppedBeam,
     Reference,
@@ -22,6 +24,7 @@ from bemcontact.problem import (
     Uniform,
     Values,
 )
+from bemcontact.problem.pin_and_hole import EQUAL, Round, pin_and_hole
 from bemcontact.reference.closed_forms import (
     BeamOverProp,
     ClosedCrack,
@@ -29,7 +32,8 @@ from bemcontact.reference.closed_forms import (
     PunchOnHalfPlane,
     ShrunkRing,
 )
-from bemcontact.reference.positions import Frame, coordinates, in_zone, reach, spacing
+from bemcontact.reference.pin_in_hole import WIDEST, LoosePin
+from bemcontact.reference.positions import LEVEL, Frame, coordinates, in_zone, reach, spacing
 from bemcontact.serialization import Flags, Internal, Leaf, Pair
 
 HERTZ_RANGE = 0.1
@@ -41,6 +45,13 @@ INTERIOR = 0.9
 of Hertz's curve, where an error of b is magnified by 1 / sqrt(2 (1 - x/b))."""
 HALF_PLANE = 10.0
 """Least size of a half-plane, in half-widths of contact; the error of Hertz and punch is 0.5 % then."""
+INFINITE_PLATE = 20.0
+"""Least size of an infinite plate, in radii of its hole; the error of the peak is up to 1.2 % at a half angle of 70
+degrees, as far as the plate is held on one side, and 0.3 % if it is held on two."""
+LOOSE = 0.03
+"""Largest clearance of a pin over its radius; an angle of contact is off by a quarter of that."""
+NEARLY = 0.05
+"""Part of a radius within which an outline ends at the center or at the far side of a pin."""
 INFINITE_PANEL = 20.0
 """Least size of an infinite panel, in half-lengths a of the crack; the error is 3.4 (a/size)², 0.9 %."""
 SLENDER = 10.0
@@ -52,6 +63,7 @@ SOURCES: dict[type[Reference], str] = {
     Hertz: "Hertz; Johnson 1985, section 4.2",
     FlatPunch: "rigid punch on a half-plane; Johnson 1985, section 2.8",
     ShrinkFit: "Lamé; Timoshenko and Goodier 1970, article 28",
+    PinInHole: "pin in a hole; Persson 1964, Ciavarella and Decuzzi 2001",
     Uniform: "uniform compression",
     Crack: "elliptical opening in an infinite panel, by superposition",
     ProppedBeam: "beam theory with Timoshenko's shear",
@@ -62,6 +74,7 @@ TOLERANCES: dict[type[Reference], tuple[float, str]] = {
     Hertz: (0.01, "the error of Hertz in its range is up to 0.5 %, the rest is for the mesh"),
     FlatPunch: (0.02, "the error for the smallest body in its range is 0.5 %, the rest is for the mesh"),
     ShrinkFit: (0.01, "exact in the linear theory; the tolerance is for the mesh"),
+    PinInHole: (0.02, "the error for the smallest plate in its range is up to 1.2 %, the rest is for the mesh"),
     Uniform: (0.01, "exact in the linear theory; the tolerance is for the mesh"),
     Crack: (0.02, "the error for the smallest panel in its range is 0.9 %, the rest is for the mesh"),
     ProppedBeam: (0.02, "the error of beam theory in its range is up to 1.3 %, the rest is for the mesh"),
@@ -173,6 +186,8 @@ def _expected(name: str, stated: Reference, problem: Problem, contact: Condensed
             return _flat_punch(silent, stated, problem, contact)
         case ShrinkFit():
             return _uniform(silent, _shrink_fit(stated, problem), contact)
+        case PinInHole():
+            return _pin_in_hole(silent, stated, problem, contact)
         case Uniform():
             return _uniform(silent, stated.pressure, contact)
         case Crack():
@@ -252,6 +267,70 @@ def _off_the_ends(form: PunchOnHalfPlane, x: Array) -> BoolArray:
         return np.abs(away) <= INTERIOR
     away *= np.sign(form.eccentricity)
     return (away <= INTERIOR) & (np.abs(away + 1) >= 1 - INTERIOR)
+
+
+def _pin_in_hole(silent: Expected, stated: PinInHole, problem: Problem, contact: CondensedContact) -> Expected:
+    """The pin, in range in a plate of twenty radii; near the end of contact it is not compared."""
+    zone = stated.zone or contact.zone_names[0]
+    sides = pin_and_hole(problem, zone, stated)
+    assert sides is not None, "checked when the problem was made"
+    parts = {part.name: part for part in problem.parts}
+    pin, plate = (None if name is None else parts.get(name) for name in (sides.pin, sides.plate))
+    here, circle = in_zone(contact, stated.zone), sides.first
+    if stated.center is None and np.ptp(contact.initial_gap[here]) < LEVEL * circle.radius:
+        return replace(silent, in_range=False, remark="all gaps are equal; give the middle of the contact as center")
+    form = LoosePin(
+        load=stated.load,
+        radius=stated.radius,
+        clearance=stated.clearance,
+        pin=pin and pin.material,
+        plate=plate and plate.material,
+    )
+    if form.half_angle is None:
+        wide = f"the contact is wider than {np.degrees(WIDEST):.0f} degrees to either side"
+        return replace(silent, in_range=False, remark=wide)
+    scale = form.mean_radius / circle.radius  # the same length of contact on circles of both radii
+    middle = Frame.at(contact, stated.zone, stated.center).center
+    x, y = (float(way) for way in middle - circle.center)
+    end = float(np.degrees(form.half_angle * scale))
+    axes = Values(source=silent.source, zone=stated.zone, against="angle", center=circle.center, zero=(x, y), end=end)
+    angle = np.radians(coordinates(axes, contact.points, contact.arc_position))
+    if not stated.half:
+        axes = axes.model_copy(update={"start": -end})
+    elif angle[here].mean() < 0:
+        axes = axes.model_copy(update={"start": -end, "end": None})
+    away = np.abs(np.hypot(*(contact.points - circle.center).T) - circle.radius)
+    pressure = np.where(away < EQUAL * circle.radius, form.pressure(angle / scale), np.nan)
+    pressure = _within(contact, stated, pressure)
+    steep = np.maximum((1 - INTERIOR) * form.half_angle, spacing(contact) / circle.radius)
+    remark = _beyond_pin(form, pin, plate, circle, np.array([x, y]))
+    return replace(
+        _values(silent, axes, contact),
+        pressure=pressure,
+        compared=np.isfinite(pressure) & (np.abs(np.abs(angle / scale) - form.half_angle) > steep),
+        peak=form.peak,
+        resultant=float(np.hypot(stated.load / 2, form.spread)) if stated.half else stated.load,
+        in_range=not remark,
+        remark=remark,
+    )
+
+
+def _beyond_pin(form: LoosePin, pin: Part | None, plate: Part | None, circle: Round, direction: Array) -> str:
+    """Reason why a pin is out of its range, with the direction (2,) of its load; empty if it is in range."""
+    if form.clearance > LOOSE * form.radius * (1 + 1e-9):
+        return _shown(f"the form of a pin needs a small clearance; here it is {form.clearance / form.radius:.2g} radii")
+    along = direction / np.hypot(*direction)
+    if pin is not None:
+        far = (np.vstack([edge.polyline() for edge in pin.loops[0]]) - circle.center) @ -along
+        if len(pin.loops) > 1 or far.max() < (1 - NEARLY) * form.radius:
+            return _shown("the form of a pin needs a whole and solid one, or half of it beside its line of symmetry")
+    if plate is not None:
+        across = np.array([-along[1], along[0]])
+        outline = (np.vstack([edge.polyline() for edge in plate.loops[0]]) - circle.center) / form.radius
+        sides = [float(side) for way in (along, -along, across, -across) if (side := (outline @ way).max()) > NEARLY]
+        if min(sides) < INFINITE_PLATE - NEARLY:
+            return _shown(f"the pin needs an infinite plate; here it ends {min(sides):.2g} radii away from its center")
+    return ""
 
 
 def _crack(silent: Expected, stated: Crack, problem: Problem, contact: CondensedContact) -> Expected:

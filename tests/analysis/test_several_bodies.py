@@ -3,6 +3,7 @@
 import csv
 import io
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -183,6 +184,40 @@ def test_twins_are_the_same_as_one_of_them_on_the_plane_of_symmetry(pressure):
     one, other = (bemcontact.solve(item).solution.pressure for item in (twins, alone))
     assert (one > 0).sum() > 4
     assert np.abs(one[one > 0] - other[other > 0]).max() < 1e-10 * other.max()
+
+
+def cantilever(sign: int) -> dict[str, Any]:
+    """A clamped beam under pressure, with a round nose at its tip that reaches y = 0 from above (sign 1) or below."""
+    both, nose = ({"ratio": ratio, "towards": towards} for ratio, towards in ((8, "both"), (60, "middle")))
+    edges = [
+        {"name": "under", "start": (0, 1), "end": (93, 1), "elements": 16, "grading": both},
+        {"name": "nose", "start": (93, 1), "end": (107, 1), "elements": 60, "grading": nose},
+        {"name": "tip", "start": (107, 1), "end": (107, 11), "elements": 4},
+        {"name": "top", "start": (107, 11), "end": (0, 11), "elements": 18},
+        {"name": "clamp", "start": (0, 11), "end": (0, 1), "elements": 8},
+    ]
+    edges[1] |= {"kind": "arc", "center": [100, 25 * sign]}
+    if sign < 0:
+        edges = [edge | {"start": edge["end"], "end": edge["start"]} for edge in edges[::-1]]
+    outer = [edge | {key: [edge[key][0], sign * edge[key][1]] for key in ("start", "end")} for edge in edges]
+    return elastic({"outer": outer}, {"clamp": {"displacement": {"x": 0, "y": 0}}, "top": {"pressure": 5e-4}})
+
+
+def test_two_mirrored_cantilevers_are_one_of_them_on_the_plane_between_them():
+    """Both bend by the same and turn to opposite sides. The force is 3/8 q l and more, for a load beyond the prop."""
+    twins = problem({"up": cantilever(1), "low": cantilever(-1)}, c=["up/nose", "low/nose"])
+    surface = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+    zones = {"c": {"edges": "nose", "surface": surface}}
+    alone = stated(name="alone", **cantilever(1), accuracy=None, contact_zones=zones)
+    one, other = map(bemcontact.solve, (twins, alone))
+    assert one.certified
+    assert other.certified
+    assert (other.solution.pressure > 0).sum() > 4
+    peak = other.solution.pressure.max()
+    assert np.abs(one.solution.pressure - other.solution.pressure).max() < 1e-9 * peak
+    assert one.footprint.forces["c"] == pytest.approx(other.footprint.forces["c"], rel=1e-9, abs=1e-12)
+    beyond = 7 + 3 / (4 * 100) * 7**2  # force there, and 3 M / 2 l by its moment M
+    assert other.footprint.forces["c"][1] == pytest.approx(5e-4 * (3 / 8 * 100 + beyond), rel=0.02)
 
 
 def test_force_and_moment_of_a_contact_are_those_of_the_loads():

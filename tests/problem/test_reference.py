@@ -2,14 +2,17 @@
 
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 import schemas
 import yaml
 from messages import assert_one_mistake
+from pydantic import TypeAdapter
 
 import bemcontact
 from bemcontact.problem import Crack, FlatPunch, Hertz, Problem, ProppedBeam, ShrinkFit, Table, Uniform, Values
+from bemcontact.problem.reference import Reference, ReferenceSpec
 
 BODY = """\
 name: block on a plane
@@ -144,6 +147,16 @@ REFUSED = {
         "-1}",
         "reference.it.gap: … at least 0, found -1",
     ),
+    "tight pin": (
+        "{kind: pin_in_hole, load: 1, radius: 1, clearance: 0}",
+        "0}",
+        "reference.it.clearance: … greater than 0, found 0",
+    ),
+    "no pin": (
+        "{kind: pin_in_hole, load: 1, radius: 1, clearance: 0.01}",
+        "1, clearance",
+        "reference.it.radius: 'foot' is no contact of a pin of radius 1 with … no circle, and no circle; correct",
+    ),
     "per cent": (
         "{kind: uniform, pressure: 5, tolerance: 2}",
         "2}",
@@ -244,6 +257,14 @@ def test_reference_names_one_of_several_zones(text: str):
     bemcontact.loads(spec(text.replace("}", ", zone: wall}"), WALL))
 
 
+def test_pin_names_one_of_several_zones():
+    text = spec("{kind: pin_in_hole, load: 1, radius: 1, clearance: 0.01}", WALL)
+    with pytest.raises(
+        bemcontact.SpecError, match=r"reference\.it: there are 2 contact zones; give zone: foot or wall"
+    ):
+        bemcontact.loads(text)
+
+
 def test_reference_without_a_zone_is_for_all_zones():
     bemcontact.loads(spec("{kind: uniform, pressure: 5}", WALL))
     bemcontact.loads(spec("{kind: values, source: s, peak: 5}", WALL))
@@ -302,7 +323,8 @@ def test_schema_rejects_invalid_references(case: str, words: str):
 
 def test_the_examples_of_the_page_on_references_are_read():
     page = (Path(__file__).parents[2] / ".docs/how-to/reference_values.md").read_text(encoding="utf-8")
-    examples = re.findall(r"^\| `\w+` \| `(\{kind: .*?\})` \|", page, flags=re.MULTILINE)
-    block = "reference:\n" + "".join(f"  example {i}: {example}\n" for i, example in enumerate(examples))
-    references = bemcontact.loads(BODY + block).reference.values()
-    assert len({type(reference) for reference in references}) == 8
+    examples = re.findall(r"^\| `(\w+)` \| `(\{kind: .*?\})` \|", page, flags=re.MULTILINE)
+    read = TypeAdapter(ReferenceSpec).validate_python
+    references = [read(yaml.load(example, yaml.SafeLoader)) for _, example in examples]
+    assert [reference.kind for reference in references] == [kind for kind, _ in examples]
+    assert {type(reference) for reference in references} == {*get_args(Reference)}

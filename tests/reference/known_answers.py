@@ -118,6 +118,45 @@ reference:
 """
 
 
+def pin_in_hole(load: float, size: float = 20.0, plate: float = 1000.0, others: str = "") -> str:
+    """Half of a heavy pin of radius 1 in a hole that is wider by 0.001, in half of a plate that is held on two sides.
+
+    The pin has the modulus 1000. In a plate of the same modulus, the load 0.13834 on the whole pin has a half angle of
+    30 degrees. The plate ends at x = size and y = ± size.
+    """
+    return f"""
+name: pin in a hole
+bodies:
+  pin:
+    material: {{young_modulus: 1000, poisson_ratio: 0.3}}
+    boundary:
+      outer:
+        - {{name: rim, kind: arc, center: [0, -0.001], radius: 1, angles: [-90, 90]}}
+        - {{name: axis}}
+    conditions: {{axis: {{displacement: {{x: 0}}}}}}
+    loads: {{gravity: {{density: {load / pi!r}, acceleration: [0, -1]}}}}
+  plate:
+    material: {{young_modulus: {plate}, poisson_ratio: 0.3}}
+    boundary:
+      outer:
+        - {{name: bottom, start: [0, {-size}], end: [{size}, {-size}]}}
+        - {{name: right, end: [{size}, {size}]}}
+        - {{name: top, end: [0, {size}]}}
+        - {{name: upper axis, end: [0, 1.001]}}
+        - {{name: hole, kind: arc, center: [0, 0], end: [0, -1.001], clockwise: true}}
+        - {{name: lower axis}}
+    conditions:
+      upper axis: {{displacement: {{x: 0}}}}
+      lower axis: {{displacement: {{x: 0}}}}
+      top: {{displacement: {{y: 0}}}}
+      bottom: {{displacement: {{y: 0}}}}
+contacts: {{bearing: {{between: [pin/rim, plate/hole]}}}}
+accuracy: 3e-3
+reference:
+  pin: {{kind: pin_in_hole, load: {load!r}, radius: 1, clearance: 0.001, half: true{others}}}
+"""
+
+
 BLOCK = """
 name: block between two walls and a plane
 material: {young_modulus: 1000, poisson_ratio: 0.0}
