@@ -52,12 +52,13 @@ def displaced(
         ridge = (np.hypot(*(face - contact.normals[own]).T) > ALIKE) & (along > STEEP)
         other = ~ridge & (np.sum(there.normals * face, axis=-1) < SAME_FACE)
         beyond = there.gap / np.where(ridge, along, 1.0) - linear[own]
-        grooved = other & (beyond < 0) & isinstance(gaps.surfaces[zone], Polyline)
         found.motion[own] -= gaps.tool_motion(zone, at[own], paired=True)
+        tip = gaps.beside_groove(zone, at[own], np.hypot(*found.motion[own].T))
+        grooved = (beyond < 0) & (tip | (other & isinstance(gaps.surfaces[zone], Polyline)))
         turned = np.where(ridge[:, None], face, there.normals)
         places = at[own] + displacement[own]
         turned = turned + gaps.turn_of_normals(zone, places - gaps.tool_motion(zone, places), turned)
-        found.turn[own] = np.where(other[:, None], 0.0, turned - face)
+        found.turn[own] = np.where((other | tip)[:, None], 0.0, turned - face)
         found.change[own] = np.where(grooved, 0.0, beyond)
         found.distance[own], found.other[own] = there.gap, other
     return found

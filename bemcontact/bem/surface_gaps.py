@@ -274,9 +274,10 @@ class SurfaceGaps:
         return np.maximum(-here.gap - dip, np.where(beyond, -there.gap, -np.inf))
 
     def _beside_corner(self, zone: str, elements: IntArray) -> BoolArray:
-        """Whether places (k, q) of elements (k,) are nearer to a corner of a polyline than they move, which is little.
+        """Whether places (k, q) of elements (k,) are nearer to a corner of a surface than they move, which is little.
 
-        Linear theory leaves open on which side of the corner they come to lie. Those beside a convex corner of a body,
+        Linear theory leaves open on which side of the corner they come to lie: at a tip, where strains are infinite,
+        places move against each other by more than their distance from it. Those beside a convex corner of a body,
         where pairs end, slide along the end however far they move; `placement` judges this.
         """
         places, surface = self.outline.sampled(elements).points, self.surfaces[zone]
@@ -286,7 +287,16 @@ class SurfaceGaps:
         moved = np.hypot(*np.moveaxis(self._displacement[elements] - self.tool_motion(zone, places), 2, 0))
         for corner in surface.points if isinstance(surface, Polyline) else surface.ridges:
             beside |= np.hypot(*np.moveaxis(places - corner, 2, 0)) <= moved
-        return beside & (isinstance(surface, BodySurface) | (moved <= LITTLE * self.problem.size))
+        if isinstance(surface, Polyline):
+            return beside & (moved <= LITTLE * self.problem.size)
+        return beside | self.beside_groove(zone, places, moved)
+
+    def beside_groove(self, zone: str, places: Array, moved: Array) -> BoolArray:
+        """Whether a little motion (...) [L] takes places (...) in a concave corner of a body to its other face."""
+        surface = self.surfaces[zone]
+        if not isinstance(surface, BodySurface):
+            return np.zeros(moved.shape, bool)
+        return (moved <= LITTLE * self.problem.size) & surface.beside_groove(places, moved)
 
     def _same(self, zone: str, here: Faces) -> BoolArray:
         """Whether the face of each place (k, q, 3) is that of each node of its element; a smooth surface has one."""

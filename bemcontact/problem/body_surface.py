@@ -9,10 +9,11 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
-from bemcontact.problem.curves import Curve, Edge, cross
+from bemcontact.problem.curves import Curve, Edge, Segment, cross
 from bemcontact.problem.edge_places import (
     CORNER,
     STEEPEST,
+    TIE,
     EdgePlaces,
     NormalWeight,
     bent_joints,
@@ -21,7 +22,7 @@ from bemcontact.problem.edge_places import (
     paired_on,
 )
 from bemcontact.problem.rigid_surface import RigidSurface, Shape
-from bemcontact.problem.surface_lines import Closest, Faces, between_normals
+from bemcontact.problem.surface_lines import Closest, Faces, between_normals, pressed_normals, ridge_beside
 from bemcontact.problem.validation import Point
 
 AT_END = 1e-9
@@ -35,6 +36,26 @@ Likewise a distance over the length of the longest edge.
 """
 WIDEST = 2.0
 """Distance of a pair from the nearest place, over that of the point, up to which it is taken: others are elsewhere."""
+
+
+class Joint(NamedTuple):
+    """A corner between two edges of a surface.
+
+    Parameters
+    ----------
+    point : (2,) [L]
+    normals : (2, 2) of both edges there, out of the body
+    edges : their numbers in the surface
+    """
+
+    point: Array
+    normals: Array
+    edges: tuple[int, int]
+
+    @property
+    def convex(self) -> bool:
+        """Whether the body is convex there."""
+        return bool(cross(self.normals[0], self.normals[1]) > 0)
 
 
 class Feet(NamedTuple):
@@ -144,7 +165,7 @@ class BodySurface:
         gap, beside = np.sum((points[at] - places.points) * normals, axis=1), places.points - feet.points[at]
         near = np.hypot(*beside.T) <= WIDEST * (abs(feet.gap[at]) + flush)
         own, other = curvatures(self.first, first)[at], curvatures(self.edges, places)
-        near &= np.sum(first.normals[at] * places.normals, axis=1) < -STEEPEST
+        near &= np.sum(first.normals[at] * places.normals, axis=1) < -STEEPEST - TIE
         # otherwise common normals cross on the way
         near &= (1 + self.share * own * gap > 0) & (1 + (1 - self.share) * other * gap > 0)
         edge, fraction, foot = feet.edge.copy(), feet.fraction.copy(), feet.points.copy()
@@ -186,19 +207,44 @@ class BodySurface:
         """
         pairs = self.pairs(points)
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in (pairs.gap + self.offset, pairs.normals))
+        held = Faces(gap, normals, normals.copy())
         turns = abs(cross(inward[:, 0], inward[:, 1])) > CORNER
         near = ON_CORNER * max(np.ptp(part) for part in points.T)
-        for joint, own in self.joints:
-            far = reach if cross(own[0], own[1]) < 0 else 0.0
+        if not self.elastic:
+            self._press_on_ridges(points, inward, pairs, held)
+        for corner in self.joints:
+            joint, own, far = corner.point, corner.normals, 0.0 if corner.convex else reach
             at = np.flatnonzero(np.hypot(*(points - joint).T) <= np.where(turns, np.maximum(far, near), near))
             turned = np.einsum("kai,si->kas", inward[at], own)
             for column, side in ((0, 0), (1, 0), (2, 1)):
                 chosen = own[turned[:, side].argmax(axis=1)]
-                if cross(own[0], own[1]) > 0:
+                if corner.convex:
                     chosen = np.where(turns[at, None], chosen, between_normals(inward[at, side], own[:1], own[1:]))
-                normals[at, column] = chosen
-                gap[at, column] = np.sum((points[at] - joint) * chosen, axis=1) + self.offset
-        return Faces(gap, normals, normals.copy())
+                held.normals[at, column] = held.faces[at, column] = chosen
+                held.gap[at, column] = np.sum((points[at] - joint) * chosen, axis=1) + self.offset
+        return held
+
+    def _press_on_ridges(self, points: Array, inward: Array, feet: Feet, held: Faces) -> None:
+        """Put the normals of the other body beside convex corners of this rigid one, as `Polyline` does.
+
+        So it is at corners between straight edges. Between two elastic bodies such places are no pairs.
+        """
+        lines = [isinstance(edge.curve, Segment) for edge in self.edges]
+        ridges = [item for item in self.joints if item.convex and all(lines[i] for i in item.edges)]
+        if not ridges:
+            return
+        own, straight = pressed_normals(inward, cross(inward[:, 0], inward[:, 1]), held)
+        within = np.full((len(points), len(ridges)), -np.inf)
+        for number, ridge in enumerate(ridges):
+            beside = np.flatnonzero(np.isin(feet.edge, ridge.edges))
+            body = own[beside, 1]
+            within[beside, number] = np.sum(between_normals(body, ridge.normals[:1], ridge.normals[1:]) * body, axis=1)
+        which, smooth = within.argmax(axis=1), straight & np.isfinite(within).any(axis=1)
+        offset = points - np.array([ridge.point for ridge in ridges])[which]
+        after, before = np.moveaxis(np.array([ridge.normals for ridge in ridges])[which], 1, 0)
+        for column in range(3):
+            there = ridge_beside(offset, own[:, column], held.normals[:, column], before, after)
+            held.put(smooth & there.counts, column, there.gap + self.offset, there.normals, there.faces)
 
     @cached_property
     def ridges(self) -> Array:
@@ -212,15 +258,29 @@ class BodySurface:
         ]
         return np.array(found).reshape(-1, 2)
 
+    def beside_groove(self, points: Array, motion: Array) -> BoolArray:
+        """Whether points (...) in concave corners of the body are so near that they may cross to the other face.
+
+        `motion` (...) [L] is how far they move. The other face is at the distance r sin α from a place at r on one of
+        them, with the angle α between both.
+        """
+        beside = np.zeros(motion.shape, bool)
+        for joint in self.joints:
+            if not joint.convex:
+                one, other = joint.normals
+                sine = abs(cross(one, other)) if one @ other < 0 else 1.0
+                beside |= sine * np.hypot(*np.moveaxis(points - joint.point, -1, 0)) <= motion
+        return beside
+
     @cached_property
-    def joints(self) -> list[tuple[Array, Array]]:
-        """Corners between two edges of the surface: point (2,) and both normals (2, 2) out of the body."""
-        names, joints = {edge.name for edge in self.edges}, []
+    def joints(self) -> list[Joint]:
+        """Corners between two edges of the surface."""
+        numbers, joints = {edge.name: number for number, edge in enumerate(self.edges)}, list[Joint]()
         for edge, _, after in _neighbors(self.loops):
-            if edge.name in names and after.name in names:
+            if edge.name in numbers and after.name in numbers:
                 own = np.stack([edge.normals(np.ones(1))[0], after.normals(np.zeros(1))[0]])
                 if abs(cross(own[0], own[1])) > CORNER:
-                    joints.append((np.array(edge.end), own))
+                    joints.append(Joint(np.array(edge.end), own, (numbers[edge.name], numbers[after.name])))
         return joints
 
 
