@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import chain
+from itertools import chain, permutations
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -144,8 +144,11 @@ class BodySurface:
             normals[at], corner[at] = side[:, None] * offset[at] / away[at, None], True
         return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner, at_corner)
 
-    def pairs(self, points: Array) -> Feet:
+    def pairs(self, points: Array, inward: Array | None = None) -> Feet:
         """Places that form pairs with points (k, 2) [L] of the first side, and the common normals there.
+
+        `inward` (k, 2) are the normals into the first body, which has two at its corners: those of the nearest edge if
+        they are not stated.
 
         Points are on the common normals of their pairs, so that the forces on both bodies have no moment together.
         Pairs of a rigid body are the nearest places. A point whose pair is too far away has it as a corner, for the end
@@ -155,17 +158,18 @@ class BodySurface:
             return self.feet(points)
         moved, points = np.array(self.approach), np.asarray(points, float)
         first, points = nearest_on(self.first, points), points - moved
+        own_normals = -first.normals if inward is None else inward
         feet = self.feet(points)
         flush = ROUND_OFF * max(edge.length for edge in (*self.first, *self.edges))
         on_first = np.hypot(*(points + moved - first.points).T) <= flush
-        at = np.flatnonzero(on_first & (np.sum(first.normals * feet.normals, axis=1) < 0))
+        at = np.flatnonzero(on_first & (np.sum(own_normals * feet.normals, axis=1) > 0))
         nearest = EdgePlaces(feet.edge[at], feet.fraction[at], feet.points[at], feet.normals[at])
-        places, normals, paired = paired_on(self.edges, nearest, points[at], -first.normals[at], self._weights)
+        places, normals, paired = paired_on(self.edges, nearest, points[at], own_normals[at], self._weights)
         at = at[paired]
         gap, beside = np.sum((points[at] - places.points) * normals, axis=1), places.points - feet.points[at]
         near = np.hypot(*beside.T) <= WIDEST * (abs(feet.gap[at]) + flush)
         own, other = curvatures(self.first, first)[at], curvatures(self.edges, places)
-        near &= np.sum(first.normals[at] * places.normals, axis=1) < -STEEPEST - TIE
+        near &= np.sum(own_normals[at] * places.normals, axis=1) > STEEPEST + TIE
         # otherwise common normals cross on the way
         near &= (1 + self.share * own * gap > 0) & (1 + (1 - self.share) * other * gap > 0)
         edge, fraction, foot = feet.edge.copy(), feet.fraction.copy(), feet.points.copy()
@@ -205,10 +209,12 @@ class BodySurface:
         (k,) [L]. A convex corner presses on a smooth boundary along its normal, as far as that is between the normals
         of the edges.
         """
-        pairs = self.pairs(points)
+        pairs = self.pairs(points, inward[:, 0])
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in (pairs.gap + self.offset, pairs.normals))
-        held = Faces(gap, normals, normals.copy())
         turns = abs(cross(inward[:, 0], inward[:, 1])) > CORNER
+        after = self.pairs(points[turns], inward[turns, 1])
+        gap[turns, 2], normals[turns, 2] = after.gap + self.offset, after.normals
+        held = Faces(gap, normals, normals.copy())
         near = ON_CORNER * max(np.ptp(part) for part in points.T)
         if not self.elastic:
             self._press_on_ridges(points, inward, pairs, held)
@@ -259,18 +265,26 @@ class BodySurface:
         return np.array(found).reshape(-1, 2)
 
     def beside_groove(self, points: Array, motion: Array) -> BoolArray:
-        """Whether points (...) in concave corners of the body are so near that they may cross to the other face.
+        """Whether points (...) in concave corners of either body are so near that they may cross to the other face.
 
         `motion` (...) [L] is how far they move. The other face is at the distance r sin α from a place at r on one of
         them, with the angle α between both.
         """
         beside = np.zeros(motion.shape, bool)
-        for joint in self.joints:
-            if not joint.convex:
-                one, other = joint.normals
-                sine = abs(cross(one, other)) if one @ other < 0 else 1.0
-                beside |= sine * np.hypot(*np.moveaxis(points - joint.point, -1, 0)) <= motion
+        for corner, (one, other) in self._grooves:
+            sine = abs(cross(one, other)) if one @ other < 0 else 1.0
+            beside |= sine * np.hypot(*np.moveaxis(points - corner, -1, 0)) <= motion
         return beside
+
+    @cached_property
+    def _grooves(self) -> list[tuple[Array, Array]]:
+        """Concave corners of both sides: point (2,) and normals (2, 2)."""
+        grooves = [(joint.point, joint.normals) for joint in self.joints if not joint.convex]
+        for before, after in permutations(self.first, 2):
+            normals = np.concatenate([before.normals(np.ones(1)), after.normals(np.zeros(1))])
+            if before.end == after.start and cross(normals[0], normals[1]) < -CORNER:
+                grooves.append((np.array(before.end), normals))
+        return grooves
 
     @cached_property
     def joints(self) -> list[Joint]:
