@@ -98,6 +98,7 @@ class BodySurface:
     offset : what is added to the gap as drawn [L]
     share : part that the first side has in common normals, its modulus E / (1 - ν²) over the sum of both
     first : edges of the first side where it has such a part
+    first_loops : all loops of that body
     approach : displacement [L] of this body that makes it touch them as drawn; pairs are those after it
     nearest : fractions of curves where they are nearest to it, as far as they were looked for
     """
@@ -110,6 +111,7 @@ class BodySurface:
     offset: float = 0.0
     share: float = 0.0
     first: tuple[Edge, ...] = ()
+    first_loops: tuple[tuple[Edge, ...], ...] = ()
     approach: Point = (0.0, 0.0)
     nearest: dict[Curve, tuple[float, ...]] = field(default_factory=dict)
 
@@ -126,6 +128,11 @@ class BodySurface:
                 sharp = (abs(cross(own, others)) > CORNER) | (np.sum(own * others, axis=1) < 0)
                 corners.append(sharp | np.array([other.name not in names for other in (before, after)]))
         return np.array(sums), np.array(corners)
+
+    @cached_property
+    def other_side(self) -> "BodySurface":
+        """The boundary of the first of two elastic bodies, as the surface that this one touches."""
+        return BodySurface(body="", elastic=True, edges=self.first, loops=self.first_loops, offset=self.offset)
 
     def feet(self, points: Array) -> Feet:
         """Places that are nearest to points (k, 2) [L]."""

@@ -59,7 +59,8 @@ class Faces(NamedTuple):
 
     def put(self, here: BoolArray, column: int, gap: Array, normals: Array, faces: Array) -> None:
         """Put others at some points (k,) in one of the three columns, from values at all points."""
-        self.gap[here, column], self.normals[here, column], self.faces[here, column] = gap[here], normals[here], faces[here]
+        for own, new in zip(self, (gap, normals, faces), strict=True):
+            own[here, column] = new[here]
 
 
 LOADED: Mapping[str, str] = dict.fromkeys(

@@ -99,7 +99,8 @@ def test_each_side_of_a_corner_of_the_first_body_has_its_own_normal(angle):
     """Common normals at both corners of a symmetric notch mirror each other: no shoulder is taken for a face."""
     y = 2 * np.tan(np.radians(angle))
     wedge = polygon(face=(0, -y), side=(2.2, 0.1 * y), top=(2.2, 2), left_side=(-2.2, 2), left_face=(-2.2, 0.1 * y))
-    own = problem({"base": elastic(notch(angle)), "wedge": elastic(wedge)}, 0.05, c=["base", "wedge"]).zones["c"].surface
+    bodies = {"base": elastic(notch(angle)), "wedge": elastic(wedge)}
+    own = problem(bodies, 0.05, c=["base", "wedge"]).zones["c"].surface
     assert isinstance(own, BodySurface)
     down, s, c = np.array([0.0, -1.0]), np.sin(np.radians(angle)), np.cos(np.radians(angle))
     inward = np.array([[down, [s, -c]], [[-s, -c], down]])  # in the order of the boundary
