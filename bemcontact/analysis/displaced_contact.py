@@ -5,13 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem.body import Body
-from bemcontact.bem.contact_points import ALIKE, ContactPoints
+from bemcontact.bem.contact_points import ALIKE, SMOOTH, ContactPoints
 from bemcontact.bem.mesh import Mesh, MeshPart
 from bemcontact.bem.surface_gaps import SAME_FACE, SurfaceGaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.surface_lines import STEEP, Polyline
 
@@ -52,22 +53,72 @@ def displaced(
         ridge = (np.hypot(*(face - contact.normals[own]).T) > ALIKE) & (along > STEEP)
         other = ~ridge & (np.sum(there.normals * face, axis=-1) < SAME_FACE)
         beyond = there.gap / np.where(ridge, along, 1.0) - linear[own]
-        grooved = other & (beyond < 0) & isinstance(gaps.surfaces[zone], Polyline)
         found.motion[own] -= gaps.tool_motion(zone, at[own], paired=True)
+        tip = gaps.beside_groove(zone, at[own], np.hypot(*found.motion[own].T))
+        grooved = (beyond < 0) & (tip | (other & isinstance(gaps.surfaces[zone], Polyline)))
         turned = np.where(ridge[:, None], face, there.normals)
         places = at[own] + displacement[own]
         turned = turned + gaps.turn_of_normals(zone, places - gaps.tool_motion(zone, places), turned)
-        found.turn[own] = np.where(other[:, None], 0.0, turned - face)
+        found.turn[own] = np.where((other | tip)[:, None], 0.0, turned - face)
         found.change[own] = np.where(grooved, 0.0, beyond)
         found.distance[own], found.other[own] = there.gap, other
+        surface = gaps.surfaces[zone]
+        if isinstance(surface, BodySurface) and surface.elastic:
+            sure, pressed = own.copy(), contact.pressed(solution.pressure, solution.displacement)
+            sure[own] = ~tip
+            _see_from_other_side(gaps, zone, points, sure, pressed, linear, found)
     return found
+
+
+def _see_from_other_side(
+    gaps: SurfaceGaps, zone: str, points: ContactPoints, own: BoolArray, pressed: BoolArray, linear: Array,
+    found: Displaced,
+) -> None:  # fmt: skip
+    """Put the distance of nodes of the second elastic body from the first one, where it says more.
+
+    `own` (n,) are the points of the zone that are not at the tip of a notch, and `pressed` (n,) those under pressure.
+
+    If an end of the second body slides along the first one, nothing is opposite to points behind it. But the pressure
+    slides along with the end, if all pressed nodes of the second body in this run are still opposite to the first one.
+    Opposite to a corner slopes are infinite, and the corner has slid on from there. So places beside a corner of the
+    first body are compared with that body. Both is the same if the sides are exchanged.
+    """
+    mesh, other = points.mesh, points.opposite.node
+    at = np.flatnonzero(own & (other >= 0))
+    there = gaps.from_other_side(zone, mesh.nodes[other[at]] + _at_nodes(gaps, points)[other[at]])
+    change = there.gap - linear[at]
+    facing = np.sum(there.normals * points.faces[at], axis=1) >= SAME_FACE * np.hypot(*there.normals.T)
+    slid, off = found.other[at] & (found.change[at] > 0), pressed[at] & ~facing & (change > 0)
+    along = slid & ~np.isin(points.run[at], points.run[at][off])
+    corners, others = (mesh.nodes[_convex(mesh, nodes[at[pressed[at]]])] for nodes in (points.node, other))
+    places = mesh.nodes[points.node[at]]
+    use = facing & (along | (~slid & (_nearest(places, corners) < _nearest(places, others))))
+    at = at[use]
+    found.change[at], found.distance[at], found.other[at] = change[use], there.gap[use], False
+    found.turn[at] = there.normals[use] - points.faces[at]
+
+
+def _convex(mesh: Mesh, nodes: IntArray) -> IntArray:
+    """Those of some nodes that are convex corners of their body."""
+    ends = nodes[nodes < len(mesh.elements)]
+    return ends[mesh.turns[ends] < -SMOOTH]
+
+
+def _nearest(points: Array, places: Array) -> Array:
+    """Distance (k,) [L] of points (k, 2) from the nearest of some places (j, 2); infinite without any."""
+    return np.hypot(*np.moveaxis(points[:, None] - places, 2, 0)).min(axis=1, initial=np.inf)
 
 
 def _at_points(gaps: SurfaceGaps, points: ContactPoints) -> Array:
     """Displacement (n, 2) [L] of the contact points."""
+    return _at_nodes(gaps, points)[points.node]
+
+
+def _at_nodes(gaps: SurfaceGaps, points: ContactPoints) -> Array:
+    """Displacement (N, 2) [L] of all nodes."""
     displacement = np.zeros((len(points.mesh.nodes), 2))
     displacement[points.mesh.elements] = gaps.state.displacement
-    return displacement[points.node]
+    return displacement
 
 
 def load_after(

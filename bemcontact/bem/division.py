@@ -105,8 +105,9 @@ def in_order(edges: Mapping[str, Edge], matched: Sequence[Matched]) -> list[str]
 def feet(item: Matched, edge: Edge, at: Array) -> Array:
     """Fractions (k,) of the opposite edge at the pairs of ascending places (k,) of an edge: they descend."""
     curve, inside = item.surface.edges[item.part.onto].curve, BESIDE * (at[-1] - at[0])
-    places = edge.points(np.append(at, [at[0] + inside, at[-1] - inside]))
-    there, beside = np.split(curve.nearest(item.surface.pairs(places).points), [len(at)])
+    at = np.append(at, [at[0] + inside, at[-1] - inside])
+    pairs = item.surface.pairs(edge.points(at), -edge.normals(at))
+    there, beside = np.split(curve.nearest(pairs.points), [len(at) - 2])
     for end in (0, -1):
         if abs(there[end] - beside[end]) > HALF:  # the end of a full circle is its start
             there[end] = round(beside[end])

@@ -21,6 +21,7 @@ from bemcontact.bem.outline import NODES, Outline
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problem.body_surface import AnyShape, BodySurface
+from bemcontact.problem.curves import cross
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.surface_lines import Closest, Faces, Polyline, Spline
@@ -185,6 +186,19 @@ class SurfaceGaps:
             motion = self.tool_motion(zone, moved - motion)
         return self.undeformed(zone, moved - motion)
 
+    def from_other_side(self, zone: str, moved: Array) -> Closest:
+        """Distance (k,) [L] of displaced places (k, 2) of the second elastic body from the displaced first one.
+
+        The normals are those there after the motion, into the first body.
+        """
+        surface = self.surfaces[zone]
+        assert isinstance(surface, BodySurface)
+        first = surface.other_side
+        motion = self._motion_of(first, moved)
+        places = moved - self._motion_of(first, moved - motion)
+        gap, normals = first.closest(places)
+        return Closest(gap, -(normals + self._turn_of(first, places, normals)))
+
     def undeformed(self, zone: str, points: Array) -> Closest:
         """Distance (...) [L] of points (..., 2) from the undisplaced surface, and the normals there."""
         surface, flat = self.surfaces[zone], points.reshape(-1, 2)
@@ -199,10 +213,7 @@ class SurfaceGaps:
         """
         surface = self.surfaces[zone]
         if isinstance(surface, BodySurface) and surface.elastic:
-            feet = (surface.pairs if paired else surface.feet)(points.reshape(-1, 2))
-            element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)
-            values = np.einsum("ki,kix->kx", reference_element.values(xi), self.state.displacement[element])
-            return values.reshape(points.shape)
+            return self._motion_of(surface, points, paired=paired)
         for name, tool in self.problem.tools.items():
             if zone in tool.zones:
                 x, y, turn = self.tools[name]
@@ -215,6 +226,17 @@ class SurfaceGaps:
         surface = self.surfaces[zone]
         if not (isinstance(surface, BodySurface) and surface.elastic):
             return self.tool_motion(zone, normals) - self.tool_motion(zone, np.zeros((1, 2)))
+        return self._turn_of(surface, points, normals)
+
+    def _motion_of(self, surface: BodySurface, points: Array, *, paired: bool = False) -> Array:
+        """Displacement (..., 2) [L] of an elastic body at places opposite to points (..., 2)."""
+        feet = (surface.pairs if paired else surface.feet)(points.reshape(-1, 2))
+        element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)
+        values = np.einsum("ki,kix->kx", reference_element.values(xi), self.state.displacement[element])
+        return values.reshape(points.shape)
+
+    def _turn_of(self, surface: BodySurface, points: Array, normals: Array) -> Array:
+        """Change (k, 2) of normals (k, 2) of an elastic body at points (k, 2) [L]."""
         feet = surface.feet(points)
         element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)
         shapes = reference_element.derivatives(xi)
@@ -274,9 +296,10 @@ class SurfaceGaps:
         return np.maximum(-here.gap - dip, np.where(beyond, -there.gap, -np.inf))
 
     def _beside_corner(self, zone: str, elements: IntArray) -> BoolArray:
-        """Whether places (k, q) of elements (k,) are nearer to a corner of a polyline than they move, which is little.
+        """Whether places (k, q) of elements (k,) are nearer to a corner of a surface than they move, which is little.
 
-        Linear theory leaves open on which side of the corner they come to lie. Those beside a convex corner of a body,
+        Linear theory leaves open on which side of the corner they come to lie: at a tip, where strains are infinite,
+        places move against each other by more than their distance from it. Those beside a convex corner of a body,
         where pairs end, slide along the end however far they move; `placement` judges this.
         """
         places, surface = self.outline.sampled(elements).points, self.surfaces[zone]
@@ -286,7 +309,16 @@ class SurfaceGaps:
         moved = np.hypot(*np.moveaxis(self._displacement[elements] - self.tool_motion(zone, places), 2, 0))
         for corner in surface.points if isinstance(surface, Polyline) else surface.ridges:
             beside |= np.hypot(*np.moveaxis(places - corner, 2, 0)) <= moved
-        return beside & (isinstance(surface, BodySurface) | (moved <= LITTLE * self.problem.size))
+        if isinstance(surface, Polyline):
+            return beside & (moved <= LITTLE * self.problem.size)
+        return beside | self.beside_groove(zone, places, moved)
+
+    def beside_groove(self, zone: str, places: Array, moved: Array) -> BoolArray:
+        """Whether a little motion (...) [L] takes places (...) in a concave corner of a body to its other face."""
+        surface = self.surfaces[zone]
+        if not isinstance(surface, BodySurface):
+            return np.zeros(moved.shape, bool)
+        return (moved <= LITTLE * self.problem.size) & surface.beside_groove(places, moved)
 
     def _same(self, zone: str, here: Faces) -> BoolArray:
         """Whether the face of each place (k, q, 3) is that of each node of its element; a smooth surface has one."""
@@ -306,7 +338,9 @@ class SurfaceGaps:
         before, normals = self.undeformed(zone, at.points)
         after = self.exact(zone, at.points + motion).gap
         if isinstance(self.surfaces[zone], BodySurface):  # linear: beside an end of contact places slide along it
-            after = before + np.sum(normals * (motion - self.tool_motion(zone, at.points)), axis=-1)
+            against = motion - self.tool_motion(zone, at.points)
+            along = self._normals_beside_end(zone, at.points, against, normals)
+            after = before + np.sum(along * against, axis=-1)
         turned = np.sum(at.inward * normals, axis=-1) > TURNED
         snug = self._fits(zone, elements, before, turned)[:, None]
         behind, mesh = np.zeros(len(self.state.points), bool), self.outline.mesh
@@ -329,6 +363,23 @@ class SurfaceGaps:
         sure = depth > self._second_order(zone)
         hidden = [float(np.max(depth, initial=-np.inf, where=beyond & sure)) for beyond in ended]
         return np.where(np.any(ended, axis=0), -np.inf, depth), behind[elements], hidden, local
+
+    def _normals_beside_end(self, zone: str, places: Array, motion: Array, normals: Array) -> Array:
+        """Normals (k, q, 2) along which places beside the zone move into another elastic body.
+
+        Where the zone ends at a corner, places that are nearer to it than they slide have the normal of contact at the
+        corner: along another one the gap of the corner itself would not be zero when it touches.
+        """
+        surface, paired, mesh = self.surfaces[zone], self.paired[zone], self.outline.mesh
+        if not (isinstance(surface, BodySurface) and surface.elastic):
+            return normals
+        result = normals.copy()
+        for last, neighbor in ((2, mesh.elements[:, 2]), (0, mesh.before)):
+            for own in np.flatnonzero(paired & ~paired[neighbor]).tolist():
+                normal, corner = self.held[zone].normals[own, last], self.state.points[own, last]
+                slides = abs(cross(normal, motion))
+                result[np.hypot(*np.moveaxis(places - corner, 2, 0)) <= slides] = normal
+        return result
 
     def _slides(self, zone: str, surface: BodySurface, places: Array) -> BoolArray:
         """Whether a corner is nearest to places (k, q, 2), and pairs that end there are compared in their place.

@@ -3,16 +3,17 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import chain
+from itertools import chain, permutations
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
-from bemcontact.problem.curves import Curve, Edge, cross
+from bemcontact.problem.curves import Curve, Edge, Segment, cross
 from bemcontact.problem.edge_places import (
     CORNER,
     STEEPEST,
+    TIE,
     EdgePlaces,
     NormalWeight,
     bent_joints,
@@ -21,7 +22,7 @@ from bemcontact.problem.edge_places import (
     paired_on,
 )
 from bemcontact.problem.rigid_surface import RigidSurface, Shape
-from bemcontact.problem.surface_lines import Closest, Faces, between_normals
+from bemcontact.problem.surface_lines import Closest, Faces, between_normals, pressed_normals, ridge_beside
 from bemcontact.problem.validation import Point
 
 AT_END = 1e-9
@@ -35,6 +36,26 @@ Likewise a distance over the length of the longest edge.
 """
 WIDEST = 2.0
 """Distance of a pair from the nearest place, over that of the point, up to which it is taken: others are elsewhere."""
+
+
+class Joint(NamedTuple):
+    """A corner between two edges of a surface.
+
+    Parameters
+    ----------
+    point : (2,) [L]
+    normals : (2, 2) of both edges there, out of the body
+    edges : their numbers in the surface
+    """
+
+    point: Array
+    normals: Array
+    edges: tuple[int, int]
+
+    @property
+    def convex(self) -> bool:
+        """Whether the body is convex there."""
+        return bool(cross(self.normals[0], self.normals[1]) > 0)
 
 
 class Feet(NamedTuple):
@@ -79,6 +100,7 @@ class BodySurface:
     share : part that the first side has in common normals: its modulus E / (1 - ν²) over the sum of both, 1 if it may
         spin, and 0 if this body may
     first : edges of the first side where it has such a part
+    first_loops : all loops of that body
     approach : displacement [L] of this body that makes it touch them as drawn; pairs are those after it
     nearest : fractions of curves where they are nearest to it, as far as they were looked for
     """
@@ -91,6 +113,7 @@ class BodySurface:
     offset: float = 0.0
     share: float = 0.0
     first: tuple[Edge, ...] = ()
+    first_loops: tuple[tuple[Edge, ...], ...] = ()
     approach: Point = (0.0, 0.0)
     nearest: dict[Curve, tuple[float, ...]] = field(default_factory=dict)
 
@@ -107,6 +130,11 @@ class BodySurface:
                 sharp = (abs(cross(own, others)) > CORNER) | (np.sum(own * others, axis=1) < 0)
                 corners.append(sharp | np.array([other.name not in names for other in (before, after)]))
         return np.array(sums), np.array(corners)
+
+    @cached_property
+    def other_side(self) -> "BodySurface":
+        """The boundary of the first of two elastic bodies, as the surface that this one touches."""
+        return BodySurface(body="", elastic=True, edges=self.first, loops=self.first_loops, offset=self.offset)
 
     def feet(self, points: Array) -> Feet:
         """Places that are nearest to points (k, 2) [L]."""
@@ -125,8 +153,11 @@ class BodySurface:
             normals[at], corner[at] = side[:, None] * offset[at] / away[at, None], True
         return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner, at_corner)
 
-    def pairs(self, points: Array) -> Feet:
+    def pairs(self, points: Array, inward: Array | None = None) -> Feet:
         """Places that form pairs with points (k, 2) [L] of the first side, and the common normals there.
+
+        `inward` (k, 2) are the normals into the first body, which has two at its corners: those of the nearest edge if
+        they are not stated.
 
         Points are on the common normals of their pairs, so that the forces on both bodies have no moment together.
         Pairs of a rigid body are the nearest places. A point whose pair is too far away has it as a corner, for the end
@@ -136,17 +167,18 @@ class BodySurface:
             return self.feet(points)
         moved, points = np.array(self.approach), np.asarray(points, float)
         first, points = nearest_on(self.first, points), points - moved
+        own_normals = -first.normals if inward is None else inward
         feet = self.feet(points)
         flush = ROUND_OFF * max(edge.length for edge in (*self.first, *self.edges))
         on_first = np.hypot(*(points + moved - first.points).T) <= flush
-        at = np.flatnonzero(on_first & (np.sum(first.normals * feet.normals, axis=1) < 0))
+        at = np.flatnonzero(on_first & (np.sum(own_normals * feet.normals, axis=1) > 0))
         nearest = EdgePlaces(feet.edge[at], feet.fraction[at], feet.points[at], feet.normals[at])
-        places, normals, paired = paired_on(self.edges, nearest, points[at], -first.normals[at], self._weights)
+        places, normals, paired = paired_on(self.edges, nearest, points[at], own_normals[at], self._weights)
         at = at[paired]
         gap, beside = np.sum((points[at] - places.points) * normals, axis=1), places.points - feet.points[at]
         near = np.hypot(*beside.T) <= WIDEST * (abs(feet.gap[at]) + flush)
         own, other = curvatures(self.first, first)[at], curvatures(self.edges, places)
-        near &= np.sum(first.normals[at] * places.normals, axis=1) < -STEEPEST
+        near &= np.sum(own_normals[at] * places.normals, axis=1) > STEEPEST + TIE
         # otherwise common normals cross on the way
         near &= (1 + self.share * own * gap > 0) & (1 + (1 - self.share) * other * gap > 0)
         edge, fraction, foot = feet.edge.copy(), feet.fraction.copy(), feet.points.copy()
@@ -186,21 +218,48 @@ class BodySurface:
         (k,) [L]. A convex corner presses on a smooth boundary along its normal, as far as that is between the normals
         of the edges.
         """
-        pairs = self.pairs(points)
+        pairs = self.pairs(points, inward[:, 0])
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in (pairs.gap + self.offset, pairs.normals))
         turns = abs(cross(inward[:, 0], inward[:, 1])) > CORNER
+        after = self.pairs(points[turns], inward[turns, 1])
+        gap[turns, 2], normals[turns, 2] = after.gap + self.offset, after.normals
+        held = Faces(gap, normals, normals.copy())
         near = ON_CORNER * max(np.ptp(part) for part in points.T)
-        for joint, own in self.joints:
-            far = reach if cross(own[0], own[1]) < 0 else 0.0
+        if not self.elastic:
+            self._press_on_ridges(points, inward, pairs, held)
+        for corner in self.joints:
+            joint, own, far = corner.point, corner.normals, 0.0 if corner.convex else reach
             at = np.flatnonzero(np.hypot(*(points - joint).T) <= np.where(turns, np.maximum(far, near), near))
             turned = np.einsum("kai,si->kas", inward[at], own)
             for column, side in ((0, 0), (1, 0), (2, 1)):
                 chosen = own[turned[:, side].argmax(axis=1)]
-                if cross(own[0], own[1]) > 0:
+                if corner.convex:
                     chosen = np.where(turns[at, None], chosen, between_normals(inward[at, side], own[:1], own[1:]))
-                normals[at, column] = chosen
-                gap[at, column] = np.sum((points[at] - joint) * chosen, axis=1) + self.offset
-        return Faces(gap, normals, normals.copy())
+                held.normals[at, column] = held.faces[at, column] = chosen
+                held.gap[at, column] = np.sum((points[at] - joint) * chosen, axis=1) + self.offset
+        return held
+
+    def _press_on_ridges(self, points: Array, inward: Array, feet: Feet, held: Faces) -> None:
+        """Put the normals of the other body beside convex corners of this rigid one, as `Polyline` does.
+
+        So it is at corners between straight edges. Between two elastic bodies such places are no pairs.
+        """
+        lines = [isinstance(edge.curve, Segment) for edge in self.edges]
+        ridges = [item for item in self.joints if item.convex and all(lines[i] for i in item.edges)]
+        if not ridges:
+            return
+        own, straight = pressed_normals(inward, cross(inward[:, 0], inward[:, 1]), held)
+        within = np.full((len(points), len(ridges)), -np.inf)
+        for number, ridge in enumerate(ridges):
+            beside = np.flatnonzero(np.isin(feet.edge, ridge.edges))
+            body = own[beside, 1]
+            within[beside, number] = np.sum(between_normals(body, ridge.normals[:1], ridge.normals[1:]) * body, axis=1)
+        which, smooth = within.argmax(axis=1), straight & np.isfinite(within).any(axis=1)
+        offset = points - np.array([ridge.point for ridge in ridges])[which]
+        after, before = np.moveaxis(np.array([ridge.normals for ridge in ridges])[which], 1, 0)
+        for column in range(3):
+            there = ridge_beside(offset, own[:, column], held.normals[:, column], before, after)
+            held.put(smooth & there.counts, column, there.gap + self.offset, there.normals, there.faces)
 
     @cached_property
     def ridges(self) -> Array:
@@ -214,15 +273,37 @@ class BodySurface:
         ]
         return np.array(found).reshape(-1, 2)
 
+    def beside_groove(self, points: Array, motion: Array) -> BoolArray:
+        """Whether points (...) in concave corners of either body are so near that they may cross to the other face.
+
+        `motion` (...) [L] is how far they move. The other face is at the distance r sin α from a place at r on one of
+        them, with the angle α between both.
+        """
+        beside = np.zeros(motion.shape, bool)
+        for corner, (one, other) in self._grooves:
+            sine = abs(cross(one, other)) if one @ other < 0 else 1.0
+            beside |= sine * np.hypot(*np.moveaxis(points - corner, -1, 0)) <= motion
+        return beside
+
     @cached_property
-    def joints(self) -> list[tuple[Array, Array]]:
-        """Corners between two edges of the surface: point (2,) and both normals (2, 2) out of the body."""
-        names, joints = {edge.name for edge in self.edges}, []
+    def _grooves(self) -> list[tuple[Array, Array]]:
+        """Concave corners of both sides: point (2,) and normals (2, 2)."""
+        grooves = [(joint.point, joint.normals) for joint in self.joints if not joint.convex]
+        for before, after in permutations(self.first, 2):
+            normals = np.concatenate([before.normals(np.ones(1)), after.normals(np.zeros(1))])
+            if before.end == after.start and cross(normals[0], normals[1]) < -CORNER:
+                grooves.append((np.array(before.end), normals))
+        return grooves
+
+    @cached_property
+    def joints(self) -> list[Joint]:
+        """Corners between two edges of the surface."""
+        numbers, joints = {edge.name: number for number, edge in enumerate(self.edges)}, list[Joint]()
         for edge, _, after in _neighbors(self.loops):
-            if edge.name in names and after.name in names:
+            if edge.name in numbers and after.name in numbers:
                 own = np.stack([edge.normals(np.ones(1))[0], after.normals(np.zeros(1))[0]])
                 if abs(cross(own[0], own[1])) > CORNER:
-                    joints.append((np.array(edge.end), own))
+                    joints.append(Joint(np.array(edge.end), own, (numbers[edge.name], numbers[after.name])))
         return joints
 
 

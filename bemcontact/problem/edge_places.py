@@ -10,6 +10,8 @@ from bemcontact.problem.curves import Edge, cross
 
 STEEPEST = 0.5
 """Cosine of the angle between two boundaries from which they may form pairs: small displacements close no wider one."""
+TIE = 1e-9
+"""Difference of a cosine from it that is round-off: boundaries at exactly this angle form no pairs, on any side."""
 CORNER = 1e-6
 """Sine of the angle between two edges from which their joint is a corner."""
 STEPS = 30
@@ -94,7 +96,7 @@ def bent_joints(edges: Sequence[Edge], others: Sequence[Edge]) -> Array:
             normals = np.concatenate([before.normals(np.ones(1)), after.normals(np.zeros(1))])
             if before.end == after.start and abs(cross(*normals)) > CORNER:
                 facing = nearest_on(others, np.array([before.end])).normals
-                if (normals @ facing[0] < -STEEPEST).all():
+                if (normals @ facing[0] < -STEEPEST - TIE).all():
                     found.append((*before.end, min(before.length, after.length)))
     return np.array(found).reshape(-1, 3)
 

@@ -8,7 +8,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.problem.body_surface import AnyShape, AnySurface, BodySurface
 from bemcontact.problem.curves import Curve, Edge
-from bemcontact.problem.edge_places import STEEPEST
+from bemcontact.problem.edge_places import STEEPEST, TIE
 from bemcontact.problem.surface_lines import Polyline
 from bemcontact.problem.validation import Point
 from bemcontact.problem.visibility import turned_to
@@ -73,7 +73,7 @@ def approach(edges: Sequence[Edge], surface: BodySurface) -> Point:
     points = np.vstack([edge.points(own) for edge, own in zip(edges, at, strict=True)])
     outward = np.vstack([edge.normals(own) for edge, own in zip(edges, at, strict=True)])
     feet = surface.feet(points)
-    facing = (np.sum(outward * feet.normals, axis=1) < -STEEPEST) & ((feet.gap > 0) | ~feet.corner)
+    facing = (np.sum(outward * feet.normals, axis=1) < -STEEPEST - TIE) & ((feet.gap > 0) | ~feet.corner)
     gap, normals = feet.gap[facing], feet.normals[facing]
     least = float(gap.min(initial=np.inf))
     if not FLUSH * np.ptp(points, axis=0).max() < abs(least) < np.inf:
@@ -116,7 +116,7 @@ def surface_corners(edge: Edge, surface: AnySurface, *, at_ends: bool = False) -
 
 def _corners_of_body(edge: Edge, surface: BodySurface) -> Iterator[SurfaceCorner]:
     """Where an edge is nearest to a corner of a body, to both sides of which it is turned there."""
-    for corner, normals in surface.joints:
+    for corner, normals, _ in surface.joints:
         fraction = edge.curve.nearest(corner[None])
         if AT_END < fraction[0] < 1 - AT_END and turned_to(-edge.normals(fraction), normals).all():
             (x, y), (u, v) = normals

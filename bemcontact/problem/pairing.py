@@ -69,7 +69,7 @@ def _parts_of(edge: Edge, surface: BodySurface, most: float) -> list[OppositePar
     """Opposite parts of one edge, up to a gap [L]."""
 
     def opposite(at: Array) -> tuple[IntArray, Array]:
-        feet = surface.pairs(edge.points(at))
+        feet = surface.pairs(edge.points(at), -edge.normals(at))
         turned = turned_to(-edge.normals(at), feet.normals)
         one = ~feet.corner
         if not surface.elastic and feet.corner.any():

@@ -216,14 +216,14 @@ class StatedBodies(SpecModel):
             if (edge.name in second or second == (body,)) and edge.name not in held
         )
         surface = BodySurface(body=body, elastic=elastic, edges=touched, loops=loops, offset=gap)
-        edges = tuple(first)
-        if first == (own := _body_in(first),):
-            lines = [edge for loop in named_loops(self.boundary_of(own), own) for edge in loop]
+        edges, own_loops = tuple(first), named_loops(self.boundary_of(_body_in(first)), _body_in(first))
+        if first == (_body_in(first),):
+            lines = [edge for loop in own_loops for edge in loop]
             edges = tuple(name for name in edges_that_see(lines, surface) if name not in self._held_edges())
         if elastic:
             own = tuple(edge for edge in self.edges if edge.name in edges)
             share = self._share_of_first(_body_in(first), body)
-            surface = replace(surface, share=share, first=own, approach=approach(own, surface))
+            surface = replace(surface, share=share, first=own, first_loops=own_loops, approach=approach(own, surface))
         return BodyZone(edges=edges, surface=surface)
 
     def _share_of_first(self, first: str, second: str) -> float:

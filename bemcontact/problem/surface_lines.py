@@ -57,6 +57,11 @@ class Faces(NamedTuple):
     normals: Array
     faces: Array
 
+    def put(self, here: BoolArray, column: int, gap: Array, normals: Array, faces: Array) -> None:
+        """Put others at some points (k,) in one of the three columns, from values at all points."""
+        for own, new in zip(self, (gap, normals, faces), strict=True):
+            own[here, column] = new[here]
+
 
 LOADED: Mapping[str, str] = dict.fromkeys(
     ("force", "load", "moment", "displacement"),
@@ -177,7 +182,7 @@ class Polyline(SpecModel):
         """Put the normals of the body where a convex corner of the surface presses on it."""
         ridges, distances = self._ridges_beside(points)
         turn, lefts = cross(inward[:, 0], inward[:, 1]), self.sides.lefts
-        own, straight = _pressed_normals(inward, turn, held)
+        own, straight = pressed_normals(inward, turn, held)
         within = [_dot(between_normals(own[:, 1], lefts[i + 1], lefts[i]), own[:, 1]) for i in ridges.T]
         within = np.where(np.isfinite(distances), np.transpose(within), -np.inf)
         near = distances <= np.where(turn < 0, reach, 0.0)[:, None] + ON_CORNER * self._extent(points)
@@ -186,16 +191,9 @@ class Polyline(SpecModel):
         which = ridges[np.arange(len(points)), chosen]
         before, after, offset = lefts[which], lefts[which + 1], points - self.sides.corners[which + 1]
         for column in range(3):
-            body = own[:, column]
-            pressing, tilt = between_normals(body, after, before), _dot(held.normals[:, column], body)
-            over, face = _over(offset, pressing, before, after)
-            opens = over >= abs(cross(offset, body) * cross(held.normals[:, column], body)) / 2
-            inside = _dot(pressing, body) >= 1 - ALIKE
-            tilted = (tilt < LIES_ON) & (_dot(pressing, body) >= LIES_ON)
-            nearer = smooth & ~flat & (tilted | (inside & opens & (tilt < 1 - ALIKE)))
-            for here, gap, on in ((nearer, over, face), (flat, _dot(offset, pressing), pressing)):
-                held.gap[here, column], held.normals[here, column] = gap[here], pressing[here]
-                held.faces[here, column] = on[here]
+            pressing, gap, on, there = ridge_beside(offset, own[:, column], held.normals[:, column], before, after)
+            held.put(smooth & ~flat & there, column, gap, pressing, on)
+            held.put(flat, column, _dot(offset, pressing), pressing, pressing)
 
     def _ridges_beside(self, points: Array) -> tuple[IntArray, Array]:
         """Inner corners (k, 2), counted from 0, at the ends of the nearest segment; distance [L], infinite of others.
@@ -420,7 +418,7 @@ def _coordinates(point: Array) -> str:
     return f"({point[0]:.6g}, {point[1]:.6g})"
 
 
-def _pressed_normals(inward: Array, turn: Array, held: Faces) -> tuple[Array, BoolArray]:
+def pressed_normals(inward: Array, turn: Array, held: Faces) -> tuple[Array, BoolArray]:
     """Normals (k, 3, 2) of the body against which corners press, and whether (k,) a smooth side of it is pressed.
 
     At a corner of the body of which one side lies on a face it is that side.
@@ -432,10 +430,37 @@ def _pressed_normals(inward: Array, turn: Array, held: Faces) -> tuple[Array, Bo
     return unit_vectors(own.reshape(-1, 2), own.reshape(-1, 2)).reshape(own.shape), (turn == 0) | ends
 
 
-def _over(offset: Array, normals: Array, before: Array, after: Array) -> Closest:
-    """Distance (k,) [L] along normals (k, 2) at offsets (k, 2) [L] from a convex corner, and the faces (k, 2) there."""
+class RidgeGap(NamedTuple):
+    """What a convex corner of a surface means for places of a smooth boundary beside it.
+
+    Parameters
+    ----------
+    normals : (k, 2) of the boundary, as far as they lie between those of both faces
+    gap : (k,) along these normals [L]
+    faces : (k, 2) normals of the faces that the places meet in this direction
+    counts : (k,) whether this is the gap, and not the distance: the face beside a place is tilted against the boundary,
+        which cannot come to lie on it
+    """
+
+    normals: Array
+    gap: Array
+    faces: Array
+    counts: BoolArray
+
+
+def ridge_beside(offset: Array, body: Array, held: Array, before: Array, after: Array) -> RidgeGap:
+    """Gap along the boundary's own normals beside a convex corner.
+
+    `offset` (k, 2) [L] is from the corner, `body` (k, 2) the normals into the body, `held` (k, 2) those of the nearest
+    places of the surface, `before` and `after` (k, 2) those of both faces; the surface turns clockwise at the corner.
+    """
+    normals, tilt = between_normals(body, after, before), _dot(held, body)
     along = np.stack([_dot(offset, face) / np.maximum(_dot(normals, face), STEEP) for face in (before, after)])
-    return Closest(along.max(axis=0), np.where((along[0] >= along[1])[:, None], before, after))
+    gap, faces = along.max(axis=0), np.where((along[0] >= along[1])[:, None], before, after)
+    opens = gap >= abs(cross(offset, body) * cross(held, body)) / 2
+    inside = _dot(normals, body) >= 1 - ALIKE
+    tilted = (tilt < LIES_ON) & (_dot(normals, body) >= LIES_ON)
+    return RidgeGap(normals, gap, faces, tilted | (inside & opens & (tilt < 1 - ALIKE)))
 
 
 def _dot(a: Array, b: Array) -> Array:

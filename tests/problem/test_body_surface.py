@@ -8,6 +8,7 @@ from several_bodies import block, elastic, polygon, problem, rigid
 
 from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.boundary import Boundary
+from bemcontact.problem.surface_lines import Polyline
 
 ROOF = (np.array([0.6, 0.8]), np.array([-0.6, 0.8]))
 """Normals on both sides of a ridge, from right to left."""
@@ -69,3 +70,40 @@ def test_each_side_of_a_corner_in_a_concave_one_has_the_face_that_it_is_turned_t
         np.array([[0.0, 2.0]]), np.array([[[1.0, 0.0], [0.0, 1.0]]]), np.zeros(1)
     )
     assert np.allclose(faces.normals[0, [0, 2]][side], np.eye(2)[side])
+
+
+def notch(angle):
+    """A block with a notch in its upper side whose faces rise by an angle in degrees."""
+    y = 2 * np.tan(np.radians(angle))
+    return polygon(
+        bottom=(-6, -6), right=(6, -6), shoulder=(6, 0), face=(2, 0), other=(0, -y), left_shoulder=(-2, 0), left=(-6, 0)
+    )
+
+
+@pytest.mark.parametrize("angle", [45.0, 60.0, 65.0])
+def test_beside_a_convex_corner_the_faces_are_those_of_the_same_polyline(angle):
+    """A straight face that goes on beyond the corner of the notch cannot come to lie on the shoulder."""
+    t = np.tan(np.radians(angle))
+    up, normal = np.array([1.0, t]) / np.hypot(1, t), np.array([-t, 1.0]) / np.hypot(1, t)
+    points = np.array([2.0, 0.0]) + np.array([-0.5, -1e-3, 0.0, 1e-4, 1e-2, 0.3])[:, None] * up + 1e-3 * normal
+    inward = np.broadcast_to(normal, (len(points), 2, 2))
+    line = Polyline(points=((-6, 0), (-2, 0), (0, -2 * t), (2, 0), (6, 0)))
+    own, other = (item.faces(points, inward, np.zeros(len(points))) for item in (surface(rigid(notch(angle))), line))
+    for one, same in zip(own, other, strict=True):
+        assert np.allclose(one, same, rtol=0, atol=1e-12)
+    assert np.allclose(own.normals, normal)
+
+
+@pytest.mark.parametrize("angle", [55.0, 62.0])
+def test_each_side_of_a_corner_of_the_first_body_has_its_own_normal(angle):
+    """Common normals at both corners of a symmetric notch mirror each other: no shoulder is taken for a face."""
+    y = 2 * np.tan(np.radians(angle))
+    wedge = polygon(face=(0, -y), side=(2.2, 0.1 * y), top=(2.2, 2), left_side=(-2.2, 2), left_face=(-2.2, 0.1 * y))
+    bodies = {"base": elastic(notch(angle)), "wedge": elastic(wedge)}
+    own = problem(bodies, 0.05, c=["base", "wedge"]).zones["c"].surface
+    assert isinstance(own, BodySurface)
+    down, s, c = np.array([0.0, -1.0]), np.sin(np.radians(angle)), np.cos(np.radians(angle))
+    inward = np.array([[down, [s, -c]], [[-s, -c], down]])  # in the order of the boundary
+    faces = own.faces(np.array([[2.0, 0.0], [-2.0, 0.0]]), inward, np.zeros(2))
+    assert np.allclose(faces.normals[0, 2], [s, -c], rtol=0, atol=1e-12)
+    assert np.allclose(faces.normals[1, 0], [-s, -c], rtol=0, atol=1e-12)

@@ -1,0 +1,97 @@
+"""Corners of bodies in contact: beside notches, and where they slide along the other body; either side first."""
+
+import math
+
+import pytest
+from several_bodies import HELD, block, elastic, polygon, problem, rigid
+
+import bemcontact
+
+LOAD, WIDTH = 1.0, 4.4
+
+
+def wedge_in_notch(angle, base, order, accuracy=0.05):
+    """A wedge that fills a notch in the upper side of a base; it stands out of it, and is pressed down."""
+    t = math.tan(math.radians(angle))
+    notch = polygon(
+        bottom=(-6, -6), right=(6, -6), shoulder=(6, 0), face=(2, 0), other=(0, -2 * t), left_shoulder=(-2, 0),
+        left=(-6, 0),
+    )  # fmt: skip
+    edges = {"face": (0, -2 * t), "side": (2.2, 0.2 * t), "top": (2.2, 2), "left": (-2.2, 2), "other": (-2.2, 0.2 * t)}
+    wedge = elastic(polygon(**edges), {"top": {"pressure": LOAD}}, 2000.0)
+    return problem({"wedge": wedge, "base": base(notch)}, accuracy, c=list(order))
+
+
+def held(boundary):
+    return elastic(boundary, HELD)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("angle", "base", "order"),
+    [
+        (45.0, rigid, ("wedge", "base")),
+        (60.0, rigid, ("wedge", "base")),
+        (60.0, held, ("wedge", "base")),
+        (62.0, held, ("wedge", "base")),
+        (62.0, held, ("base", "wedge")),
+    ],
+)
+def test_a_wedge_fills_its_notch(angle, base, order):
+    """The faces coincide, so that they touch up to the corners of the notch, and the force is the load."""
+    result = bemcontact.solve(wedge_in_notch(angle, base, order))
+    assert result.certified
+    assert abs(abs(result.footprint.forces["c"][1]) - LOAD * WIDTH) < 1e-9 * LOAD * WIDTH
+    face = 2 / math.cos(math.radians(angle))
+    assert [item.length for item in result.footprint.intervals] == pytest.approx([face, face], rel=1e-6)
+
+
+def half_disk(order, accuracy=0.05):
+    """A half disk that is pressed on the edge of a block."""
+    disk = {
+        "outer": [
+            {"name": "under", "kind": "arc", "start": [-2.7, 3], "end": [3.3, 3], "center": [0.3, 3]},
+            {"name": "top", "end": [-2.7, 3]},
+        ]
+    }
+    bodies = {
+        "disk": elastic(disk, {"top": {"displacement": {"x": 0, "y": -0.05}}}),
+        "block": elastic(block((-4, 0.1), (-4, 0)), HELD, 2000.0),
+    }
+    return problem(bodies, accuracy, c=order)
+
+
+def cantilevers(order, accuracy=0.05):
+    """The lower corner of the tip of a cantilever bends down to another one, and slides along it."""
+    held_left = {"left": {"displacement": {"x": 0, "y": 0}}, "top": {"pressure": 0.02}}
+    bodies = {
+        "up": elastic(block((0, 6), (1.02, 2.02)), held_left),
+        "low": elastic(block((3, 10), (0, 1)), {"right": {"displacement": {"x": 0, "y": 0}}}),
+    }
+    return problem(bodies, accuracy, c=order)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("stated", "sides"), [(half_disk, ["disk/under", "block/top"]), (cantilevers, ["up/bottom", "low/top"])]
+)
+def test_a_corner_slides_along_the_other_body_whichever_side_is_first(stated, sides):
+    """Forces on both sides are opposite, and those of the two statements are those of the same problem."""
+    one, other = (bemcontact.solve(stated(order)) for order in (sides, sides[::-1]))
+    assert one.certified
+    assert other.certified
+    force = one.footprint.forces["c"][1]
+    assert abs(force + other.footprint.forces["c"][1]) < 1e-3 * force
+
+
+@pytest.mark.parametrize("order", [["up", "low"], ["low", "up"]])
+def test_a_block_that_slides_off_one_of_the_same_width_does_not_hold(order):
+    """Each of the two ends of contact is past a corner of one of the blocks: contact is shorter than computed."""
+    bodies = {
+        "up": elastic(block((0, 2), (0, 1)), {"top": {"displacement": {"x": 0.2, "y": -0.01}}}, 1000.0),
+        "low": elastic(block((0, 2), (-1, 0)), HELD, 800.0),
+    }
+    result = bemcontact.solve(problem(bodies, 0.05, c=order))
+    assert not result.holds
+    assert result.penetration is not None
+    assert "no surface" in result.penetration.words
