@@ -223,6 +223,24 @@ class StatedBodies(SpecModel):
             surface = replace(surface, share=moduli[0] / sum(moduli), first=own, approach=approach(own, surface))
         return BodyZone(edges=edges, surface=surface)
 
+    def on_pairs_of(self, other: Self) -> Self:
+        """Copy whose bodies form the pairs that they form in another problem with the same boundaries and contacts.
+
+        Common normals depend on the moduli of both bodies. What is differentiated or followed keeps its pairs.
+        """
+        problem = self.model_copy()
+        if self.contacts:
+            surfaces = {name: other.zones[name].surface for name in self.contacts}
+            kept = {
+                name: replace(other.zones[name], surface=replace(surface, offset=self.contacts[name].gap))
+                for name, surface in surfaces.items()
+                if isinstance(surface, BodySurface)
+            }
+            problem._zones = {**self.contact_zones, **kept}
+            problem._opposite = other._opposite
+        problem._bonds = dict(other.bonds)
+        return problem
+
     def opposite_edges(self, contact: str) -> tuple[str, ...]:
         """Names of the edges of the second elastic body of a contact that the first one may touch; none of others."""
         surface = self.zones[contact].surface
