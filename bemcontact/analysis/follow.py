@@ -100,8 +100,9 @@ def sensitivities(
     ----------
     problem : Problem or CondensedContact
     changes : with respect to what. By key, each per unit; or keys alone: those of `CondensedContact.changes`,
-        "initial_gap[i]" for the gap at point i, and, of a `Problem`, also "material.young_modulus" and paths to any
-        value on which gaps and loads depend linearly, and nothing else. If not given, `CondensedContact.changes`
+        "initial_gap[i]" for the gap at point i, and, of a `Problem`, also paths to a `young_modulus`, and to any value
+        on which gaps and loads depend linearly, and nothing else. If not given, `CondensedContact.changes`. Pairs of
+        points of several bodies are kept
 
     Returns
     -------
