@@ -11,10 +11,12 @@ from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.analysis.path_states import FollowedPath, errors_at_breakpoints
 from bemcontact.analysis.penetration import penetration_on_path
-from bemcontact.analysis.solve import condense, ensure_acting, ensure_kind
+from bemcontact.analysis.solve import ensure_acting, ensure_kind
 from bemcontact.analysis.variation import Variation, case_of
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
+from bemcontact.bem.condense import condensed
+from bemcontact.bem.modulus import modulus_rate
 from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import real_number, text_of_argument, texts
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -23,17 +25,20 @@ from bemcontact.errors import Issue, KeyPath, ProblemError, SingularSystemError,
 from bemcontact.formulations import complementarity
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.parametric.path import COMMON, SAME, ensure_same_body, load_path
-from bemcontact.parametric.sensitivity import Sensitivities, modulus_change
+from bemcontact.parametric.sensitivity import Sensitivities
 from bemcontact.parametric.sensitivity import sensitivities as sensitivities_of_contact
 from bemcontact.problem.key_path import existing_path, parsed_path
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.wording import described, unknown_word
 
 MODULUS = "young_modulus"
-BODY = ("material", "boundary", "mesh")
-"""Parts of a spec, or of one of its bodies, that make a body, so that more than gaps and loads depends on them."""
-PLACED = ("materials", "copy_of", "shift", "rotate", "about", "between")
-"""Parts that make or place several bodies."""
+BODY = ("material", "boundary", "mesh", "materials")
+"""Parts of a spec that make a body, so that more than gaps and loads depends on them."""
+PLACED = {
+    "bodies": ("material", "boundary", "copy_of", "shift", "rotate", "about", "rigid"),
+    "contacts": ("between",),
+}
+"""Parts of several bodies and of their contacts that make or place bodies."""
 SHARES = tuple(0.5**k for k in range(1, 11))
 """Shares of the way between two values, at which gaps and loads are checked for linear change."""
 NOTHING = 1e-13
@@ -70,6 +75,7 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
         ensure_acting(problem)
     if begin == end:
         raise ProblemError(f"{key}: a path needs two different finite values; found {begin!r} and {end!r}")
+    _ensure_no_part_of_bodies(parsed_path(key))
     on_mesh, found = _on_mesh(problem, key, begin, end)
     varied = Variation(on_mesh, key)
     path = load_path(*(replace(contact, name=problem.title) for contact in between(varied, begin, end)))
@@ -94,8 +100,9 @@ def sensitivities(
     ----------
     problem : Problem or CondensedContact
     changes : with respect to what. By key, each per unit; or keys alone: those of `CondensedContact.changes`,
-        "initial_gap[i]" for the gap at point i, and, of a `Problem`, also "material.young_modulus" and paths to any
-        value on which gaps and loads depend linearly, and nothing else. If not given, `CondensedContact.changes`
+        "initial_gap[i]" for the gap at point i, and, of a `Problem`, also paths to a `young_modulus`, and to any value
+        on which gaps and loads depend linearly, and nothing else. If not given, `CondensedContact.changes`. Pairs of
+        points of several bodies are kept
 
     Returns
     -------
@@ -115,17 +122,17 @@ def sensitivities(
         return _sensitivities(problem, None, given)
     found = meshed(problem)
     (accuracy,) = found.accuracies
-    return _sensitivities(found.condensation.contact, found.problem, given).knowing(accuracy)
+    return _sensitivities(found.condensation.contact, found, given).knowing(accuracy)
 
 
 def _sensitivities(
-    contact: CondensedContact, problem: Problem | None, given: Mapping[str, Change] | Sequence[str] | None
+    contact: CondensedContact, found: Meshed | None, given: Mapping[str, Change] | Sequence[str] | None
 ) -> Sensitivities:
     """Sensitivities of a condensed problem, and of the problem on its mesh that it came from."""
     if given is None or isinstance(given, Mapping):
         return sensitivities_of_contact(contact, given)
     solution, known = complementarity.solve(contact), contact.changes
-    wanted = {key: known[key] if key in known else _change(contact, problem, key, solution.pressure) for key in given}
+    wanted = {key: known[key] if key in known else _change(contact, found, key, solution.pressure) for key in given}
     return sensitivities_of_contact(contact, wanted, solution)
 
 
@@ -203,7 +210,7 @@ def _keys(changes: object) -> tuple[str, ...]:
     return keys
 
 
-def _change(contact: CondensedContact, problem: Problem | None, key: str, pressure: Array) -> Change:
+def _change(contact: CondensedContact, found: Meshed | None, key: str, pressure: Array) -> Change:
     """Change of gap and load per unit of a key that is neither a load case nor a tool component."""
     path = parsed_path(key)
     if path[0] == "initial_gap":
@@ -212,13 +219,15 @@ def _change(contact: CondensedContact, problem: Problem | None, key: str, pressu
         raise ProblemError(
             f"there is no '{key}': the contact points have initial_gap[0] to initial_gap[{contact.size - 1}]"
         )
-    if problem is None:
+    if found is None:
         known = ", ".join((*contact.changes, f"initial_gap[0] to initial_gap[{contact.size - 1}]"))
         raise ProblemError(f"there is no '{key}' in this condensed problem; it has: {known}")
-    if key.split(".")[-1] == MODULUS:
-        E = stated_value(problem, key)
-        return modulus_change(contact, condense(problem.with_value(key, 2 * E)), E, pressure, several=problem.several)
+    problem = found.problem
     value = stated_value(problem, key)
+    if path[-1] == MODULUS:
+        doubled = condensed(problem.with_value(key, 2 * value).on_pairs_of(problem))
+        rate = modulus_rate(found.condensation, doubled, value, pressure)
+        return Change(rate, np.zeros(contact.free_motions))
     other = 2 * value or 1.0
     first, last = between(Variation(problem, key), value, other)
     width = other - value
@@ -254,8 +263,7 @@ def between(varied: Variation, start: float, end: float) -> tuple[CondensedConta
     extrapolated. `ProblemError` if neither value can be condensed, more than gaps and loads depends on the key, or the
     dependence is not linear. The mesh of the problem must not be one to be fitted.
     """
-    if {*BODY} & {*varied.path[:3:2]} or {*PLACED} & {*varied.path}:
-        raise ProblemError(Issue(path=varied.path, message=f"the compliance depends on it; {EXACT}"))
+    _ensure_no_part_of_bodies(varied.path)
     if varied.acts_on_contact:
         return _stepped(varied, start, end)
     first, last = (varied.attempted(value) for value in (start, end))
@@ -268,6 +276,12 @@ def between(varied: Variation, start: float, end: float) -> tuple[CondensedConta
     share, middle = _farthest(varied, start, end)
     _ensure_linear(varied.key, first, middle, last, share)
     return first, last
+
+
+def _ensure_no_part_of_bodies(path: KeyPath) -> None:
+    """Refuse a value that makes or places a body."""
+    if path[0] in BODY or (len(path) > 2 and path[2] in PLACED.get(str(path[0]), ())):
+        raise ProblemError(Issue(path=path, message=f"the compliance depends on it; {EXACT}"))
 
 
 def _stepped(varied: Variation, start: float, end: float) -> tuple[CondensedContact, CondensedContact]:

@@ -24,6 +24,7 @@ from bemcontact.bem.rigid_motions import (
     toward,
 )
 from bemcontact.checks.memory import ensure_memory
+from bemcontact.contact.free_motions import MotionAlgebra
 from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.body_surface import BodySurface, BodyZone
@@ -174,6 +175,14 @@ class Body:
     def seen_load(self) -> Array:
         """Work (k, 1 + c) of each loading in the seen motions, as of `motion_load`."""
         return self.motion_load(self.seen)
+
+    @property
+    def algebra(self) -> MotionAlgebra:
+        """The seen motions that elastic bodies take part in."""
+        own = np.any(self.seen.of_bodies, axis=1)
+        return MotionAlgebra(
+            rigid_motions=self.seen_motion[:, own], weights=self.points.tributary, motion_load=self.seen_load[own]
+        )
 
     @cached_property
     def relative_load(self) -> tuple[Array, Array]:

@@ -21,7 +21,7 @@ from bemcontact.bem.rigid_motions import all_rigid_motions
 from bemcontact.bem.solution import solve_system
 from bemcontact.bem.system import System
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.free_motions import Gauge, MotionAlgebra, fix_gauge
+from bemcontact.contact.free_motions import Gauge, fix_gauge
 from bemcontact.contact.load_cases import LoadCases, Tools
 from bemcontact.problem.problem import Problem
 
@@ -187,11 +187,8 @@ def _notes(body: Body, parts: Sequence[CondensedPart]) -> tuple[str, ...]:
 
 def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
     """The condensed bodies, from the responses to their loadings and unit pressures."""
-    points, tools, s = body.points, body.tools, len(body.loadings)
-    count, bond = len(points) + len(body.bonds), None
-    compliance, free_displacement = np.zeros((count, count)), np.zeros((count, s))
-    for part in parts:
-        _observe(part, compliance, free_displacement)
+    points, tools, s, bond = body.points, body.tools, len(body.loadings), None
+    compliance, free_displacement = observed(body, parts)
     if len(body.bonds):
         compliance, free_displacement, bond = eliminate(
             compliance,
@@ -204,11 +201,7 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
         )
     R, load = body.seen_motion, body.seen_load
     own = np.any(body.seen.of_bodies, axis=1)
-    gauge = fix_gauge(
-        MotionAlgebra(rigid_motions=R[:, own], weights=points.tributary, motion_load=load[own]),
-        compliance=compliance,
-        free_displacement=free_displacement,
-    )
+    gauge = fix_gauge(body.algebra, compliance=compliance, free_displacement=free_displacement)
     on_body = np.where(own[:, None], load, 0.0)
     contact = CondensedContact(
         name=body.problem.name,
@@ -254,6 +247,15 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
         ),
     )
     return Condensation(body=body, parts=parts, contact=contact, gauge=gauge, bond=bond).acting()
+
+
+def observed(body: Body, parts: Sequence[CondensedPart]) -> tuple[Array, Array]:
+    """What bodies do to all gaps and bonds: by unit pressures (n + b, n + b) [L/p], by each loading (n + b, s) [L]."""
+    count = len(body.points) + len(body.bonds)
+    compliance, free_displacement = np.zeros((count, count)), np.zeros((count, len(body.loadings)))
+    for part in parts:
+        _observe(part, compliance, free_displacement)
+    return compliance, free_displacement
 
 
 def _observe(part: CondensedPart, compliance: Array, free_displacement: Array) -> None:

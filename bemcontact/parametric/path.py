@@ -1,5 +1,6 @@
 """Load paths: all contact states between two of one body, exact, with every point that enters or leaves contact."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -12,7 +13,7 @@ from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import real_number, shown, whole_number
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.load_cases import Change, LoadCases
+from bemcontact.contact.load_cases import Change, LoadCases, Pinned
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
@@ -184,21 +185,40 @@ class LoadPath(Leaf):
         load = between(first.motion_load, last.motion_load)
         largest = np.abs([first.motion_load, last.motion_load]).max(initial=0.0)
         none = np.abs(load).max(initial=0.0) <= CANCELLED * largest
-        tools, cases = last.tools, last.cases
+        tools = last.tools
         if len(tools):
             position = between(first.tools.position, tools.position)
             tools = replace(tools, position=position, force=between(first.tools.force, tools.force))
-        n, k = first.rigid_motions.shape
-        same = cases.names == first.cases.names and np.array_equal(cases.displacement, first.cases.displacement)
-        factors = between(first.cases.factors, cases.factors) if same else cases.factors
+        cases, pinned = self._cases(between)
         return replace(
             first,
             free_displacement=between(first.free_displacement, last.free_displacement),
             initial_gap=between(first.initial_gap, last.initial_gap),
             motion_load=np.zeros_like(load) if none else load,
             tools=tools,
-            cases=replace(cases, factors=factors) if same else LoadCases.none(n, k, len(tools)),
+            cases=cases,
+            pinned=pinned,
         )
+
+    def _cases(self, between: Callable[[Array, Array], Array]) -> tuple[LoadCases, Pinned]:
+        """Load cases at a value between both ends, and what must balance.
+
+        Either their factors differ at the ends, or they themselves do. If both do, their sum is not linear in either:
+        the loads that act are permanent then.
+        """
+        first, last, pinned = self.start.cases, self.end.cases, self.start.pinned
+        fixed = ("displacement", "motion_load", "position", "force")
+        if first.names == last.names:
+            if np.array_equal(first.factors, last.factors):
+                parts = {name: between(getattr(first, name), getattr(last, name)) for name in fixed}
+                return replace(first, **parts), pinned
+            if all(np.array_equal(getattr(first, name), getattr(last, name)) for name in fixed):
+                return replace(first, factors=between(first.factors, last.factors)), pinned
+        n, k = self.start.rigid_motions.shape
+        factors, others = np.append(1.0, first.factors), np.append(1.0, last.factors)
+        largest = max(pinned.magnitude @ abs(factors), self.end.pinned.magnitude @ abs(others))
+        acting = replace(pinned, load=(pinned.load @ factors)[:, None], magnitude=np.array([largest]))
+        return LoadCases.none(n, k, len(self.start.tools)), acting
 
     def at(self, t: float) -> ContactSolution:
         """The contact state at t, exact.

@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 from pydantic import computed_field
 
-from bemcontact.arrays import Array, IntArray, freeze_arrays, real_array
+from bemcontact.arrays import IntArray, freeze_arrays, real_array
 from bemcontact.assessment.accuracy import NO_MESH, Accuracy
 from bemcontact.assessment.footprint import ContactInterval, end_rates, footprint, resting_ends
 from bemcontact.blas_threads import one_thread
@@ -24,9 +24,6 @@ from bemcontact.serialization import Internal, Leaf, Pairs, Vector
 
 EXACT = 1e-9
 """Residual up to which a solution has a meaningful derivative."""
-INVERSE = 1e-10
-"""Relative difference that a compliance may have from twice that at twice the modulus."""
-
 NAMED = 4
 """Points that a note names; the others are counted."""
 
@@ -180,25 +177,6 @@ def sensitivities(
         weak=tuple(tangent.weak.tolist()),
         notes=(*_notes(contact, tangent.weak, _highest(contact, state), tangent.unique), *_at_rest(contact, state)),
     )
-
-
-def modulus_change(
-    contact: CondensedContact, doubled: CondensedContact, modulus: float, pressure: Array, *, several: bool = False
-) -> Change:
-    """Change of the gap at a given pressure (n,) with Young's modulus E, per unit of E.
-
-    M falls as 1/E, and so does the part Δs/E of Δ1 that loads bring about; Δu, from prescribed displacements, stays.
-    `doubled` is the problem with 2 E. Δ1(E) - Δ1(2E) = Δs/(2E) separates them, so that
-    d(Δ1 + M p)/dE = -2 (Δ1(E) - Δ1(2E) + (M(E) - M(2E)) p)/E. The change is that of this state only, since it contains
-    p. `ProblemError` if the second problem is not the first with twice the modulus; of `several` bodies only one may
-    have another modulus.
-    """
-    M = contact.compliance
-    wrong = M.shape != doubled.compliance.shape
-    if wrong or (not several and np.abs(2 * doubled.compliance - M).max() > INVERSE * np.abs(M).max()):
-        raise ProblemError("the second problem is not the first with twice Young's modulus: its compliance is not half")
-    loads = contact.free_displacement - doubled.free_displacement
-    return Change(-2 * (loads + (M - doubled.compliance) @ pressure) / modulus, np.zeros(contact.free_motions))
 
 
 def _fitting(contact: CondensedContact, key: str, change: Change) -> Change:

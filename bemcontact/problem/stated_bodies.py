@@ -263,6 +263,24 @@ class StatedBodies(SpecModel):
         radius = max(max(arc.radii) for arc in arcs)
         return radius if np.ptp([arc.center for arc in arcs], axis=0).max() <= CONCENTRIC * radius else np.inf
 
+    def on_pairs_of(self, other: Self) -> Self:
+        """Copy whose bodies form the pairs that they form in another problem with the same boundaries and contacts.
+
+        Common normals depend on the moduli of both bodies. What is differentiated or followed keeps its pairs.
+        """
+        problem = self.model_copy()
+        if self.contacts:
+            surfaces = {name: other.zones[name].surface for name in self.contacts}
+            kept = {
+                name: replace(other.zones[name], surface=replace(surface, offset=self.contacts[name].gap))
+                for name, surface in surfaces.items()
+                if isinstance(surface, BodySurface)
+            }
+            problem._zones = {**self.contact_zones, **kept}
+            problem._opposite = other._opposite
+        problem._bonds = dict(other.bonds)
+        return problem
+
     def opposite_edges(self, contact: str) -> tuple[str, ...]:
         """Names of the edges of the second elastic body of a contact that the first one may touch; none of others."""
         surface = self.zones[contact].surface

@@ -61,6 +61,33 @@ def test_states_of_a_path_are_those_of_the_problem_itself(cantilever: Problem, k
         assert apart(found.path.contact(t), problem, found.path.at(t).pressure) <= 1e-9
 
 
+@pytest.mark.parametrize("factor", [1.0, 0.5])
+def test_a_value_in_a_load_case_is_followed(cylinder: Problem, factor: float):
+    """The load of the case changes, not its factor; the state in the middle is that of a solve, and so is its peak."""
+    acting = cylinder.with_value("load_cases", {"press": {"conditions": {"top": {"pressure": 5.0}}}})
+    acting = acting.with_value("accuracy", None).with_factors({"press": factor})
+    key = "load_cases.press.conditions.top.pressure"
+    found = follow(acting, key, 15.0)
+    assert found.path.complete
+    for t in (0.0, 0.5, 1.0):
+        other = condense(acting.with_value(key, found.value(t)))
+        assert apart(found.path.contact(t), other, found.path.at(t).pressure) < 1e-9
+        assert found.path.contact(t).cases.factors == pytest.approx([factor])
+        np.testing.assert_allclose(found.path.contact(t).cases.motion_load, other.cases.motion_load, rtol=1e-12)
+
+
+def test_a_path_between_two_factors_of_two_load_cases_has_permanent_loads(cylinder: Problem):
+    """Load and factor both differ, so that neither alone describes the states between."""
+    acting = cylinder.with_value("load_cases", {"press": {"conditions": {"top": {"pressure": 5.0}}}})
+    acting = acting.with_value("accuracy", None)
+    other = acting.with_value("load_cases.press.conditions.top.pressure", 10.0)
+    ends = [condense(acting.with_factors({"press": 1.0})), condense(other.with_factors({"press": 2.0}))]
+    found = bemcontact.load_path(*ends)
+    middle = condense(acting.with_factors({"press": 2.5}))  # the load is 5 at the start and 20 at the end
+    assert apart(found.contact(0.5), middle, found.at(0.5).pressure) < 1e-9
+    assert not len(found.contact(0.5).cases)
+
+
 def test_gravity_is_a_parameter(cylinder: Problem):
     heavy = cylinder.with_value("loads.gravity", {"density": 0.01, "acceleration": [0, -1.0]})
     found = follow(heavy, "loads.gravity.acceleration[1]", -10.0)

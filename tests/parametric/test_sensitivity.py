@@ -15,7 +15,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
-from bemcontact.parametric.sensitivity import Rates, Sensitivities, modulus_change, sensitivities
+from bemcontact.parametric.sensitivity import Rates, Sensitivities, sensitivities
 
 ROUND_OFF = 4e-13
 """Of the states: numbers up to 200, with the errors of ten operations."""
@@ -99,40 +99,6 @@ def test_load_on_the_cylinder_against_central_differences(cylinder: bemcontact.P
     assert end > 0
     assert not others
     assert rates.resultant[0, 1] == pytest.approx(405, rel=1e-12)  # statics: 50.625 on a radius of 8
-
-
-def test_modulus_of_the_cylinder_against_central_differences(cylinder: bemcontact.Problem):
-    """Bodies condensed anew at E ± 1e-4 E: curvature over the step leaves 1e-8."""
-
-    def condensed(modulus: float) -> CondensedContact:
-        return bemcontact.condense(cylinder.with_value("material.young_modulus", modulus))
-
-    contact, step = condensed(1000.0), 0.1
-    change = modulus_change(contact, condensed(2000.0), 1000.0, complementarity.solve(contact).pressure)
-    rates = sensitivities(contact, {"E": change})["E"].rising
-    expected = difference(condensed(1000 + step), condensed(1000 - step), 2 * step)
-    assert_same(rates, expected, step, "pressure", "gap", "rigid_amplitudes", "peak", "interval_ends")
-    np.testing.assert_allclose(rates.resultant, 0, atol=1e-12)  # statics: the load is the same
-
-
-def test_modulus_of_a_body_with_prescribed_displacements(cylinder: bemcontact.Problem):
-    """Pushed down by 0.1 instead of loaded: Δ1 has a part that E does not change, and pressures rise with E."""
-    data = cylinder.with_value("conditions.top", {"displacement": {"y": -0.1}})
-
-    def condensed(modulus: float) -> CondensedContact:
-        return bemcontact.condense(data.with_value("material.young_modulus", modulus))
-
-    contact = condensed(1000.0)
-    pressure = complementarity.solve(contact).pressure
-    change = modulus_change(contact, condensed(2000.0), 1000.0, pressure)
-    rates = sensitivities(contact, {"E": change})["E"].rising
-    np.testing.assert_allclose(rates.pressure, pressure / 1000.0, atol=1e-9 * pressure.max() / 1000.0)
-
-
-def test_another_body_is_no_double_modulus(cylinder: bemcontact.Problem):
-    contact = bemcontact.condense(cylinder)
-    with pytest.raises(ProblemError, match="its compliance is not half"):
-        modulus_change(contact, contact, 1000.0, np.zeros(contact.size))
 
 
 @pytest.mark.parametrize("seed", range(8))
