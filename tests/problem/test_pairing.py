@@ -53,7 +53,7 @@ def test_a_foot_is_found_however_narrow_it_is_beside_the_other_edge(width, pair,
 @pytest.mark.parametrize("pair", [["w/top", "d"], ["d", "w/top"]])
 def test_each_tooth_of_a_rigid_comb_is_found(pair):
     """Twelve teeth of 0.001 at distances of 0.9, and between them a ceiling."""
-    teeth = {}
+    teeth, x = dict[str, tuple[float, float]](), 0.0
     for i in range(12):
         x = 0.9 * i - 5
         teeth |= {f"tooth {i}": (x, 0), f"right {i}": (x + 1e-3, 0)}
