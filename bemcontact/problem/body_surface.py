@@ -19,7 +19,7 @@ from bemcontact.problem.edge_places import (
     curvatures,
     nearest_on,
     paired_on,
-    places_of,
+    places_along,
 )
 from bemcontact.problem.rigid_surface import RigidSurface, Shape
 from bemcontact.problem.surface_lines import Closest, Faces, between_normals
@@ -160,7 +160,7 @@ class BodySurface:
         A part of it that is opposite to an edge of this body lies between them, however narrow it is. Where an end
         forms no pair, and beside it, so are the nearest places.
         """
-        places, moved = places_of(self.edges), np.array(self.approach)
+        places, moved = places_along(self.edges), np.array(self.approach)
         there = edge.curve.nearest(places.points + moved)
         start = EdgePlaces(np.zeros(len(there), int), there, places.points + moved, places.normals)
         shift, (own, other) = np.array([*self.approach, 0.0]), self._weights

@@ -55,7 +55,7 @@ def places_at(edges: Sequence[Edge], edge: IntArray, fraction: Array) -> EdgePla
     return EdgePlaces(edge, fraction, points, normals)
 
 
-def places_of(edges: Sequence[Edge]) -> EdgePlaces:
+def places_along(edges: Sequence[Edge]) -> EdgePlaces:
     """Both ends of edges and places between them, one edge after the other."""
     at = np.clip(np.linspace(0.0, 1.0, PARTS + 1), AT_ENDS, 1 - AT_ENDS)
     return places_at(edges, np.repeat(np.arange(len(edges)), len(at)), np.tile(at, len(edges)))

@@ -8,7 +8,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.problem.body_surface import AnyShape, AnySurface, BodySurface
 from bemcontact.problem.curves import Curve, Edge
-from bemcontact.problem.edge_places import STEEPEST, places_of
+from bemcontact.problem.edge_places import STEEPEST, places_along
 from bemcontact.problem.surface_lines import Polyline
 from bemcontact.problem.validation import Point
 from bemcontact.problem.visibility import turned_to
@@ -60,7 +60,7 @@ def _nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
 
 def _opposite_places(curve: Curve, surface: AnyShape) -> Array:
     """Fractions of the length of an edge that are nearest to places of a body: a narrow one is between samples."""
-    return curve.nearest(places_of(surface.edges).points) if isinstance(surface, BodySurface) else np.zeros(0)
+    return curve.nearest(places_along(surface.edges).points) if isinstance(surface, BodySurface) else np.zeros(0)
 
 
 def gaps(curve: Curve, surface: AnyShape, fractions: Array) -> Array:
