@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from bemcontact.adaptivity.fields import MeshDifference, Solved, most_of, solved
+from bemcontact.adaptivity.sizes import apart
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.problem.problem import Problem
 
@@ -64,10 +65,11 @@ def told_apart(differences: Sequence[MeshDifference], most: float) -> list[MeshD
 
 def _partly_cut(coarse: Solved, elements: BoolArray) -> Problem:
     """The problem with some elements (m,) of a mesh in two."""
-    problem, ends = coarse.body.problem, dict[str, list[float]]()
+    problem, ends = coarse.body.problem, dict[str, tuple[float, ...]]()
     for number, name in enumerate(coarse.mesh.edge_names):
         places = coarse.mesh.ends_on(name)
         middles = (places[:-1] + places[1:]) / 2
-        ends[name] = np.sort(np.append(places[1:-1], middles[elements[coarse.mesh.edge == number]])).tolist()
+        # edges that follow others have elements of any length, and need not state them
+        ends[name] = apart(np.sort(np.append(places[1:-1], middles[elements[coarse.mesh.edge == number]])))
     whole = problem.model_copy(update={"mesh": problem.mesh.model_copy(update={"refine": 1})})
     return whole.with_element_ends(ends)

@@ -172,7 +172,7 @@ class Loop:
         corners = [self._corners(start, stop, inside) for start, stop in pairwise(self.joints)]
         ends: dict[str, tuple[float, ...]] = {}
         for edge, own, sampled in zip(self.edges, corners, self._sampled(corners, limits, layers), strict=True):
-            ends[edge.name] = _apart((_divided(own, *sampled) - own[0]) / (own[-1] - own[0]))
+            ends[edge.name] = apart((_divided(own, *sampled) - own[0]) / (own[-1] - own[0]))
         return ends
 
     def _corners(self, start: float, stop: float, marks: Array) -> Array:
@@ -216,7 +216,7 @@ def _divided(corners: Array, samples: Array, size: Array) -> Array:
     return np.concatenate(pieces)[:-1]
 
 
-def _apart(fractions: Array) -> tuple[float, ...]:
+def apart(fractions: Array) -> tuple[float, ...]:
     """Fractions of the length of an edge without those that leave no room for an element."""
     kept = [0.0]
     for fraction in fractions.tolist():

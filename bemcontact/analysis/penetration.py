@@ -17,6 +17,7 @@ from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.penetration import ROUND_OFF, Misfit, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import runs
+from bemcontact.bem.second_side import Inside, deepest_inside
 from bemcontact.bem.surface_gaps import FaceEnd, SurfaceGaps, surface_gaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
@@ -74,6 +75,9 @@ def penetration(
             deepest = np.flatnonzero(found.depth >= (1 - ROUND_OFF) * depth)
             element = int(deepest[np.argmin(paired[deepest])])  # of equal depths that which is easier to understand
             worst = _penetration(gaps, zone, element, found.xi[element], depth, allowed)
+        other = None if worst else deepest_inside(gaps, zone)
+        if other is not None and other.depth > max(allowed, gaps.second_order(zone)):
+            worst = _of_second(gaps, zone, other, allowed)
         notes += _behind(gaps, zone, found.behind)
         notes += () if worst else _excused(gaps, zone, found.excused, found.xi, allowed)
         notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
@@ -243,6 +247,21 @@ def _penetration(gaps: SurfaceGaps, zone: str, element: int, xi: float, depth: f
         zone=zone,
         paired=paired,
         words=penetration_in_words(how_deep, f"({x:.5g}, {y:.5g}) on '{edge}'", zone, paired=paired),
+    )
+
+
+def _of_second(gaps: SurfaceGaps, zone: str, found: Inside, allowed: float) -> Penetration:
+    """Describe a penetration of the first body by an edge of the second one."""
+    x, y = found.at.tolist()
+    how_deep = f"{found.depth:.3g} {gaps.problem.units.length}".strip()
+    return Penetration(
+        depth=found.depth,
+        allowed=allowed,
+        at=(x, y),
+        edge=found.edge,
+        zone=zone,
+        paired=False,
+        words=penetration_in_words(how_deep, f"({x:.5g}, {y:.5g}) on '{found.edge}'", zone, paired=False),
     )
 
 

@@ -21,8 +21,10 @@ NEAR = 0.3
 """Part of an element up to which one of its ends moves to where an opposite part ends, instead of a new end there."""
 BESIDE = 1e-3
 """Distance from an end of some places, over their extent, where a pair is on the same side of a full turn."""
-SAME = 1e-11
-"""Difference of two fractions of an edge up to which they are one element end."""
+SAME = 1e-9
+"""Difference of two fractions of an edge up to which ends of parts are one element end: that of a mesh search."""
+LEAST = 1e-12
+"""Least element over its edge that is no round-off of its ends."""
 
 
 class Facing(NamedTuple):
@@ -157,26 +159,34 @@ def _matched(
         theirs = fractions[name][first * refine : last * refine]
         nodes = _snapped(feet(item, edges[name], theirs.ravel())).reshape(-1, 3)[::-1, ::-1]
         places = np.append(nodes[::refine, 0], nodes[-1, 2])
-        if (np.diff(places) <= 0).any():
+        if (np.diff(places) < -LEAST).any():
             raise ProblemError(_crossing(item))
+        if (np.diff(places) < LEAST).any():
+            raise ProblemError(_too_short(item))
         covered.append((places, nodes, item, last))
+    covered.sort(key=lambda part: float(part[0][0]))
     keep = np.ones(len(own), bool)
     for places, *_ in covered:
         at = np.clip(np.searchsorted(own, places[[0, -1]]), 1, len(own) - 1)
         near = NEAR * (own[at] - own[at - 1])
         keep[1:-1] &= ~((own[1:-1] > places[0] - near[0]) & (own[1:-1] < places[-1] + near[1]))
-    every = np.concatenate([own[keep], *(places for places, *_ in covered)])
-    every = np.sort(every)
-    every = every[np.append(True, np.diff(every) > SAME)]
-    every[0], every[-1] = 0.0, 1.0
+    starts = [float(places[0]) for places, *_ in covered[1:]] + [np.inf] * bool(covered)
+    taken = [
+        places[:-1] if start - places[-1] <= SAME else places
+        for (places, *_), start in zip(covered, starts, strict=True)
+    ]
+    away = [np.abs(own[:, None] - places).min(axis=1) > SAME for places in taken]
+    every = np.sort(np.concatenate([own[np.all([keep, *away], axis=0)], *taken]))
     pieces, pairs = list[Array](), list[tuple[str, Facing]]()
     follows: dict[int, tuple[Array, Matched, int]] = {}
-    for places, nodes, item, last in covered:
-        begin = int(np.abs(every - places[0]).argmin())
+    begins = [int(np.abs(every - places[0]).argmin()) for places, *_ in covered]
+    for begin, (places, nodes, item, last) in zip(begins, covered, strict=True):
         every[begin : begin + len(places)] = places
         follows |= {
             begin + i: (nodes[i * refine : (i + 1) * refine], item, last - 1 - i) for i in range(len(places) - 1)
         }
+    if covered and (np.diff(every) < LEAST).any():
+        raise ProblemError(_too_short(covered[0][2]))
     for element in range(len(every) - 1):
         number = len(pieces) * refine
         if element not in follows:
@@ -204,6 +214,17 @@ def _crossing(item: Matched) -> Issue:
     return Issue(path=("contacts", item.contact, "between"), message=message)
 
 
+def _too_short(item: Matched) -> Issue:
+    """Issue of a contact with elements that are too short for the edge that follows them."""
+    message = (
+        f"elements of '{item.part.edge}' are too short beside the length of '{item.onto}', whose elements follow them; "
+        f"cut '{item.onto}' into several edges, one of them hardly longer than '{item.part.edge}'"
+    )
+    return Issue(path=("contacts", item.contact, "between"), message=message)
+
+
 def _snapped(fractions: Array) -> Array:
-    """Fractions of an edge of which those at its ends up to round-off are there."""
-    return np.where(fractions < SAME, 0.0, np.where(fractions > 1 - SAME, 1.0, fractions))
+    """Descending fractions of an edge of which the first and the last one are at its ends if they are that near."""
+    first, last = fractions[[0, -1]]
+    fractions[0], fractions[-1] = 1.0 if first > 1 - SAME else first, 0.0 if last < SAME else last
+    return fractions

@@ -276,7 +276,7 @@ class SurfaceGaps:
                 depths[self._beside_corner(zone, elements)] = -np.inf
             deepest = depths.argmax(axis=1)
             depth[elements], xi[elements] = (part[np.arange(len(elements)), deepest] for part in (depths, local))
-        excused = ~paired & (depth <= self._second_order(zone))
+        excused = ~paired & (depth <= self.second_order(zone))
         return Intrusion(
             depth=np.where(excused, -np.inf, depth), xi=xi, behind=behind, excused=np.where(excused, depth, -np.inf),
             ends=tuple(zip(ends, hidden, strict=True)),
@@ -292,7 +292,7 @@ class SurfaceGaps:
         shapes = self.outline.shapes[elements]
         dip = np.maximum(-np.sum(shapes * np.where(self._same(zone, here), nodes, 0.0), axis=2), 0.0) * touching
         other = np.sum(here.faces * there.normals, axis=-1) < SAME_FACE
-        beyond = other & (-there.gap > self._second_order(zone)) & ~self._beside_corner(zone, elements)
+        beyond = other & (-there.gap > self.second_order(zone)) & ~self._beside_corner(zone, elements)
         return np.maximum(-here.gap - dip, np.where(beyond, -there.gap, -np.inf))
 
     def _beside_corner(self, zone: str, elements: IntArray) -> BoolArray:
@@ -360,7 +360,7 @@ class SurfaceGaps:
                 moved = np.hypot(*np.moveaxis(motion - self.tool_motion(zone, at.points), 2, 0))
                 depth[~turned & (away <= BESIDE * moved)] = -np.inf
         ended = [_opposite(end, at.points - before[..., None] * normals, normals, flush) for end in ends]
-        sure = depth > self._second_order(zone)
+        sure = depth > self.second_order(zone)
         hidden = [float(np.max(depth, initial=-np.inf, where=beyond & sure)) for beyond in ended]
         return np.where(np.any(ended, axis=0), -np.inf, depth), behind[elements], hidden, local
 
@@ -516,7 +516,7 @@ class SurfaceGaps:
         """Largest difference of the displacements of two places [L]: translations do not count."""
         return float(np.ptp(self.state.displacement.reshape(-1, 2) @ DIRECTIONS, axis=0).max())
 
-    def _second_order(self, zone: str) -> float:
+    def second_order(self, zone: str) -> float:
         """Depth [L] by which linear theory may be off: (difference of displacements)² over the size of the body.
 
         It is a part of that difference, and no more than `LARGEST_PART`: what is deeper can be seen.

@@ -20,6 +20,7 @@ from bemcontact.problem.edge_places import (
     curvatures,
     nearest_on,
     paired_on,
+    places_along,
 )
 from bemcontact.problem.rigid_surface import RigidSurface, Shape
 from bemcontact.problem.surface_lines import Closest, Faces, between_normals, pressed_normals, ridge_beside
@@ -187,14 +188,27 @@ class BodySurface:
         common[at], distance[at], corner[at] = normals, gap, ~near
         return Feet(edge, fraction, foot, distance + common @ moved, common, corner, feet.at_corner)
 
+    def seen_from(self, edge: Edge) -> Array:
+        """Fractions of an edge of the first side inside it, at the pairs of the ends and inner places of all edges.
+
+        A part of it that is opposite to an edge of this body lies between them, however narrow it is. Where an end
+        forms no pair, and beside it, so are the nearest places.
+        """
+        places, moved = places_along(self.edges), np.array(self.approach)
+        there = edge.curve.nearest(places.points + moved)
+        start = EdgePlaces(np.zeros(len(there), int), there, places.points + moved, places.normals)
+        shift, (own, other) = np.array([*self.approach, 0.0]), self._weights
+        weights = NormalWeight(other.most, other.corners + shift), NormalWeight(own.most, own.corners + shift)
+        pairs, _, _ = paired_on((edge,), start, start.points, -places.normals, weights)
+        return np.concatenate([there, pairs.fraction])
+
     @cached_property
     def _weights(self) -> tuple[NormalWeight, NormalWeight]:
         """Weights of the normals of both sides in common ones, the first one moved towards this body as it is drawn."""
+        if not self.first:
+            return NormalWeight(self.share, np.zeros((0, 3))), NormalWeight(1 - self.share, np.zeros((0, 3)))
         own = bent_joints(self.first, self.edges) - np.array([*self.approach, 0.0])
-        return (
-            NormalWeight(self.share, own),
-            NormalWeight(1 - self.share, bent_joints(self.edges, self.first)),
-        )
+        return NormalWeight(self.share, own), NormalWeight(1 - self.share, bent_joints(self.edges, self.first))
 
     def beside(self, feet: Feet) -> Array:
         """Normals (k, 2, 2) out of the body on both sides of places that are corners, of others twice their own."""

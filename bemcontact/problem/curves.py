@@ -142,11 +142,11 @@ class EllipticArc:
         """Both semi-axes [L]."""
         return self.semi_axes
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Arc length [L], by the incomplete elliptic integral of the second kind."""
-        first, last = self._arc_length(self.start_angle + np.array([0.0, self.sweep]))
-        return float(abs(last - first))
+        first, last = self._at_ends
+        return abs(last - first)
 
     def at(self, fractions: Array) -> Array:
         """Points (k, 2) at fractions (k,) of the arc length."""
@@ -191,7 +191,7 @@ class EllipticArc:
             done, t = np.all(np.abs(moved - t) <= 1e-15 * max(abs(ends[0]), abs(ends[1]), 1.0)), moved
             if done:
                 break
-        first, last = self._arc_length(self.start_angle + np.array([0.0, self.sweep]))
+        first, last = self._at_ends
         return np.clip((self._arc_length(t) - first) / (last - first), 0.0, 1.0)
 
     def _at_eccentric_angle(self, t: Array) -> Array:
@@ -206,6 +206,29 @@ class EllipticArc:
         a, b = self.semi_axes
         return a * second_kind(t - pi / 2, b / a) if a > b else b * second_kind(t, a / b)
 
+    @cached_property
+    def _at_ends(self) -> Pair:
+        """Arc length from a fixed point to both ends."""
+        first, last = self._arc_length(self.start_angle + np.array([0.0, self.sweep])).tolist()
+        return first, last
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array]:
+        """Arc length, ascending, at eccentric angles about one degree apart."""
+        t = np.sort(self.start_angle + np.linspace(0, 1, _chords(self.sweep) + 1) * self.sweep)
+        return self._arc_length(t), t
+
+    def _near(self, wanted: Array) -> Array:
+        """Eccentric angles (k,) near those with arc lengths (k,), by cubic interpolation in a table."""
+        length, t = self._table
+        i = np.clip(np.searchsorted(length, wanted, side="right") - 1, 0, len(t) - 2)
+        step = length[i + 1] - length[i]
+        x = np.clip((wanted - length[i]) / step, 0.0, 1.0)
+        before, after = (step / self._speed(t[j]) for j in (i, i + 1))
+        rise = t[i + 1] - t[i]
+        t_near = t[i] + x * (before + x * (3 * rise - 2 * before - after + x * (before + after - 2 * rise)))
+        return np.clip(t_near, t[i], t[i + 1])
+
     def _speed(self, t: Array) -> Array:
         return np.hypot(self.semi_axes[0] * np.sin(t), self.semi_axes[1] * np.cos(t))
 
@@ -213,10 +236,10 @@ class EllipticArc:
         """Invert the arc length by Newton's method, with bisection if a step leaves the bracket."""
         ends = self.start_angle + np.array([0.0, self.sweep])
         low, high = np.full(len(fractions), ends.min()), np.full(len(fractions), ends.max())
-        first, last = self._arc_length(ends)
+        first, last = self._at_ends
         wanted = first + fractions * (last - first)
         round_off = 4 * np.finfo(float).eps * max(abs(first), abs(last))
-        t = self.start_angle + fractions * self.sweep
+        t = self._near(wanted)
         for _ in range(60):
             excess = self._arc_length(t) - wanted
             if np.all(np.abs(excess) <= round_off):

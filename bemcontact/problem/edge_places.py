@@ -25,6 +25,11 @@ AHEAD = 1e-5
 MET = 1e-12
 """Distance of a point from the normal of its pair, over the length of the edge or a coordinate, that is round-off."""
 
+AT_ENDS = 1e-12
+"""Distance from both ends of an edge, over its length, of the places that are taken for them: they have its normal."""
+PARTS = 8
+"""Parts of an edge between whose ends its places are looked at."""
+
 
 class EdgePlaces(NamedTuple):
     """Places of edges.
@@ -50,6 +55,12 @@ def places_at(edges: Sequence[Edge], edge: IntArray, fraction: Array) -> EdgePla
         on = edge == i
         points[on], normals[on] = edges[i].points(fraction[on]), edges[i].normals(fraction[on])
     return EdgePlaces(edge, fraction, points, normals)
+
+
+def places_along(edges: Sequence[Edge]) -> EdgePlaces:
+    """Both ends of edges and places between them, one edge after the other."""
+    at = np.clip(np.linspace(0.0, 1.0, PARTS + 1), AT_ENDS, 1 - AT_ENDS)
+    return places_at(edges, np.repeat(np.arange(len(edges)), len(at)), np.tile(at, len(edges)))
 
 
 def nearest_on(edges: Sequence[Edge], points: Array) -> EdgePlaces:
@@ -140,11 +151,12 @@ def _on_edge(edge: Edge, fraction: Array, points: Array, own: Array, weight: Nor
     fraction, left = fraction.copy(), np.arange(len(points))
     for _ in range(STEPS):
         at, ahead = fraction[left], np.where(fraction[left] > 0.5, -AHEAD, AHEAD)
-        places, there = edge.points(at), edge.points(at + ahead)
-        offset, other, turned = points[left] - places, edge.normals(at), edge.normals(at + ahead)
+        both = np.concatenate([at, at + ahead])
+        (places, there), along = np.split(edge.points(both), 2), edge.directions(both)
+        (other, turned), offset = np.split(along[:, ::-1] * (1.0, -1.0), 2), points[left] - places
         common = _common(own[left], other, weight.at(places))
         turn = cross(common, _common(own[left], turned, weight.at(there))) / ahead
-        rate = cross(common, edge.directions(at)) * edge.length + turn * np.sum(common * offset, axis=1)
+        rate = cross(common, along[: len(at)]) * edge.length + turn * np.sum(common * offset, axis=1)
         most = LARGEST_TURN * AHEAD / np.maximum(abs(cross(other, turned)), LARGEST_TURN * AHEAD)
         step = np.clip(cross(common, offset) / np.where(rate == 0, np.inf, rate), -most, most)
         moved = (at + step) % 1.0 if edge.start == edge.end else np.clip(at + step, 0.0, 1.0)

@@ -8,7 +8,7 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.problem.body_surface import AnyShape, AnySurface, BodySurface
 from bemcontact.problem.curves import Curve, Edge
-from bemcontact.problem.edge_places import STEEPEST, TIE
+from bemcontact.problem.edge_places import STEEPEST, TIE, places_along
 from bemcontact.problem.surface_lines import Polyline
 from bemcontact.problem.validation import Point
 from bemcontact.problem.visibility import turned_to
@@ -47,8 +47,8 @@ def nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
 
 def _nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
     """Find the places among samples, and then among finer ones beside each."""
-    at = np.linspace(0, 1, SAMPLES + 1)
-    gap, step = gaps(curve, surface, at), float(at[1])
+    at, step = np.union1d(np.linspace(0, 1, SAMPLES + 1), _opposite_places(curve, surface)), 1 / SAMPLES
+    gap = gaps(curve, surface, at)
     middle = at[1:-1][(gap[1:-1] <= gap[:-2]) & (gap[1:-1] < gap[2:])]
     ends = np.array([step / 2, 1 - step / 2])[[gap[0] <= gap[1], gap[-1] <= gap[-2]]]
     middle = np.concatenate([middle, ends])
@@ -56,6 +56,11 @@ def _nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
         fine = np.clip(middle[:, None] + step * np.linspace(-1, 1, 21), 0, 1)
         middle, step = fine[np.arange(len(fine)), gaps(curve, surface, fine).argmin(axis=1)], step / 5
     return tuple(middle[np.minimum(middle, 1 - middle) > ACCURACY].tolist())
+
+
+def _opposite_places(curve: Curve, surface: AnyShape) -> Array:
+    """Fractions of the length of an edge that are nearest to places of a body: a narrow one is between samples."""
+    return curve.nearest(places_along(surface.edges).points) if isinstance(surface, BodySurface) else np.zeros(0)
 
 
 def gaps(curve: Curve, surface: AnyShape, fractions: Array) -> Array:
@@ -69,7 +74,11 @@ def approach(edges: Sequence[Edge], surface: BodySurface) -> Point:
     It is zero where it touches already, and where no displacement makes it touch at all places that are as near: a pin
     that is drawn in the middle of its hole may come to touch anywhere.
     """
-    at = [np.concatenate([np.linspace(0, 1, FEW + 1), nearest_places(edge.curve, surface)]) for edge in edges]
+    samples = np.linspace(0, 1, FEW + 1)
+    at = [
+        np.concatenate([samples, _opposite_places(edge.curve, surface), nearest_places(edge.curve, surface)])
+        for edge in edges
+    ]
     points = np.vstack([edge.points(own) for edge, own in zip(edges, at, strict=True)])
     outward = np.vstack([edge.normals(own) for edge, own in zip(edges, at, strict=True)])
     feet = surface.feet(points)

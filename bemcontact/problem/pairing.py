@@ -11,17 +11,20 @@ from bemcontact.problem.curves import Edge
 from bemcontact.problem.visibility import turned_to
 
 SAMPLES = 512
-"""Samples of an edge between which it has at most one end of an opposite part."""
+"""Samples of an edge, apart from those opposite to places of the other body: then at most one end of a part is between
+two of them."""
 SECTIONS = 16
 """Sections into which the part of an edge with such an end is cut at a time."""
-CUTS = 15
+CUTS = 12
 """Times that it is cut: then it is as short as round-off."""
 HALF = 0.5
 """Difference of fractions of an edge between two samples from which its end is between them."""
 INSIDE = 1e-9
 """Distance from an end of the edge, over its length, where the end is looked at."""
-SHORTEST = 1e-6
+SHORTEST = 1e-9
 """Least length of an opposite part over that of its edge: shorter ones are round-off of coordinates and corners."""
+ONE = 1e-10
+"""Difference of two fractions of an edge up to which they are one sample."""
 SAME = 1e-12
 """Difference of two fractions of an edge that is round-off."""
 
@@ -56,8 +59,25 @@ def _largest_gap(edges: Sequence[Edge], surface: BodySurface, reach: float) -> f
     """Gap [L] up to which places of edges are opposite to a surface."""
     if not np.isfinite(reach):
         return np.inf
-    at = np.linspace(0.0, 1.0, SAMPLES + 1)
-    return min((float(surface.feet(edge.points(at)).gap.min()) for edge in edges), default=0.0) + reach
+    gaps = (surface.feet(edge.points(_samples(edge, surface))).gap for edge in edges)
+    return min((float(gap.min()) for gap in gaps), default=0.0) + reach
+
+
+def _samples(edge: Edge, surface: BodySurface) -> Array:
+    """Fractions (k,) of an edge in equal steps, opposite to places of a surface, and between these."""
+    seen = surface.seen_from(edge)
+    seen = _apart(np.sort(seen[(seen > INSIDE) & (seen < 1 - INSIDE)]))
+    at = np.concatenate([np.arange(SAMPLES) / SAMPLES, seen, (seen[1:] + seen[:-1]) / 2])
+    return np.append(_apart(np.sort(at)), 1.0)
+
+
+def _apart(fractions: Array) -> Array:
+    """Ascending fractions (k,) without those that follow another one so closely that both are one."""
+    kept = [-1.0]
+    for fraction in fractions.tolist():
+        if fraction - kept[-1] > ONE:
+            kept.append(fraction)
+    return np.array(kept[1:])
 
 
 def _is_blunt(inward: Array, feet: Feet, surface: BodySurface) -> BoolArray:
@@ -76,34 +96,33 @@ def _parts_of(edge: Edge, surface: BodySurface, most: float) -> list[OppositePar
             one |= _is_blunt(-edge.normals(at), feet, surface)
         return np.where(turned & one & (feet.gap <= most), feet.edge, -1), feet.fraction
 
-    at = np.linspace(0.0, 1.0, SAMPLES + 1)
+    at = _samples(edge, surface)
     onto, there = opposite(np.clip(at, INSIDE, 1 - INSIDE))  # on a corner of the surface two edges are nearest
     changes = np.flatnonzero((np.diff(onto) != 0) | (abs(np.diff(there)) > HALF))
-    starts, ends = [(0.0, int(onto[0]))], []
-    for i in changes.tolist():
-        low, high = float(at[i]), float(at[i + 1])
-        ends.append(_last(opposite, low, high, int(onto[i]), float(there[i])))
-        starts.append((_last(opposite, high, low, int(onto[i + 1]), float(there[i + 1])), int(onto[i + 1])))
-    ends.append(1.0)
+    own = np.concatenate([changes, changes + 1])
+    places = _last(opposite, at[own], at[np.concatenate([changes + 1, changes])], onto[own], there[own])
+    ends, starts = np.split(places, 2)
+    numbers = [int(onto[0]), *onto[changes + 1].tolist()]
+    bounds = zip(numbers, [0.0, *starts.tolist()], [*ends.tolist(), 1.0], strict=True)
     return [
         OppositePart(edge.name, low, high, number)
-        for (low, number), high in zip(starts, ends, strict=True)
+        for number, low, high in bounds
         if number >= 0 and high - low > SHORTEST
     ]
 
 
 def _last(
-    opposite: Callable[[Array], tuple[IntArray, Array]], start: float, stop: float, number: int, there: float
-) -> float:
-    """Last place from a start towards a stop that is opposite to the edge of a number, on the side of a fraction.
+    opposite: Callable[[Array], tuple[IntArray, Array]], start: Array, stop: Array, number: IntArray, there: Array
+) -> Array:
+    """Last places (k,) from starts (k,) towards stops that are opposite to the edges of numbers, beside fractions.
 
     A full circle is one edge, whose end is its start.
     """
-    for _ in range(CUTS):
-        places = np.linspace(start, stop, SECTIONS + 1)
-        onto, fraction = opposite(places[1:-1])
-        other = np.append((onto != number) | (abs(fraction - there) > HALF), True)
-        first = int(other.argmax())
-        start, stop = places[first], places[first + 1]
-    ends = (edge_end for edge_end in (0.0, 1.0) if abs(start - edge_end) <= SAME)
-    return next(ends, start)
+    rows = np.arange(len(start))
+    for _ in range(CUTS if len(rows) else 0):
+        places = np.linspace(start, stop, SECTIONS + 1, axis=1)
+        onto, fraction = (part.reshape(len(rows), -1) for part in opposite(places[:, 1:-1].ravel()))
+        other = (onto != number[:, None]) | (abs(fraction - there[:, None]) > HALF)
+        first = np.where(other.any(axis=1), other.argmax(axis=1), SECTIONS - 1)
+        start, stop = places[rows, first], places[rows, first + 1]
+    return np.where(start <= SAME, 0.0, np.where(start >= 1 - SAME, 1.0, start))

@@ -445,3 +445,20 @@ def test_load_shares_of_a_bearing_with_rigid_rings(load, gap):
     assert np.abs(inside - outside).max() < 1e-9 * expected.max()
     assert any("'roller 1' is reused for 'roller 2', 'roller 3'" in note for note in result.notes)
     assert (inside[expected == 0] == 0).all()
+
+
+@pytest.mark.parametrize("pair", [["w/top", "d/wide"], ["d/wide", "w/top"]])
+def test_an_edge_that_is_not_named_penetrates_whichever_side_is_first(pair):
+    """A foot of 0.05, lower than the one that is named; elements of the long edge below it are longer than that."""
+    feet = polygon(
+        narrow=(-3, 0), one=(-2.95, 0), middle=(-2.95, 0.5), two=(1, 0.5), wide=(1, 0.01), three=(4, 0.01), top=(4, 2),
+        four=(-3, 2),
+    )  # fmt: skip
+    bodies = {
+        "d": elastic(feet, {"top": {"displacement": {"x": 0, "y": -0.03}}}),
+        "w": elastic(block((-40, 30), (-20, 0)), HELD, 2000.0),
+    }
+    result = bemcontact.solve(problem(bodies, 0.05, c=pair))
+    assert result.penetration is not None
+    assert (result.penetration.edge, result.penetration.zone) == ("d/narrow", "c")
+    assert 0.5 * 0.03 < result.penetration.depth < 0.03

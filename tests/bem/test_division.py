@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
-from several_bodies import GUIDED, HELD, block, circle, elastic, problem
+from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, problem
 
+from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.bem.division import divided
+from bemcontact.errors import ProblemError
 
 
 def matched(first, second, pair):
@@ -43,3 +45,41 @@ def test_the_second_side_has_the_elements_of_the_first():
     division = divided(problem(bodies, one=["a/bottom", "b/top"], two=["c/top", "b/bottom"]))
     assert len(division.fractions["b/top"]) == 5
     assert len(division.fractions["b/bottom"]) == 4
+
+
+@pytest.mark.parametrize("slide", [1e-8, 2e-10, 5e-11, 1e-13])
+@pytest.mark.parametrize("pair", [("up/bottom", "low/top"), ("low/top", "up/bottom")])
+def test_a_block_that_is_drawn_beside_another_by_round_off_has_elements_that_can_be_stated(slide, pair):
+    """Ends of opposite parts that are as near to a corner as typed coordinates are it; those farther away are not."""
+    bodies = {
+        "up": elastic(block((slide, 2 + slide), (0, 1)), GUIDED), "low": elastic(block((0, 2), (-1, 0)), HELD)
+    }  # fmt: skip
+    mesh = first_mesh(problem(bodies, accuracy=0.01, c=list(pair)))
+    fractions = divided(mesh).fractions
+    ends = {name: [*own[1:, 0].tolist()] for name, own in fractions.items()}
+    assert mesh.with_element_ends(ends).edge(pair[0]).ends_at == tuple(ends[pair[0]])
+    shortest = np.diff([0, *ends[pair[1]], 1]).min()
+    assert (shortest == pytest.approx(slide / 2, rel=0.1)) if slide > 2e-9 else (shortest > 1e-3)
+
+
+@pytest.mark.parametrize("slide", [0.0, 2e-10, 5e-11])
+def test_parts_of_two_contacts_that_end_beside_each_other_share_an_element_end(slide):
+    """A block on two others, between which a slot is drawn that is round-off."""
+    bodies = {
+        "up": elastic(block((-3, 3), (0, 1)), GUIDED),
+        "left": elastic(block((-2, 0), (-2, 0)), HELD),
+        "right": elastic(block((slide, 2), (-2, 0)), HELD),
+    }
+    mesh = first_mesh(problem(bodies, accuracy=0.01, one=["up", "left/top"], two=["up", "right/top"]))
+    (fractions,) = (own for name, own in divided(mesh).fractions.items() if name == "up/bottom")
+    assert np.diff(fractions[:, 0]).min() > 1e-3
+    assert abs(fractions[:, 0] - 0.5).min() < 1e-10
+
+
+def test_elements_that_are_round_off_of_the_edge_that_follows_them_are_refused():
+    """An edge of 7e-8, whose elements the edge of 70 cannot have."""
+    peg = polygon(foot=(0, 0), right=(7e-8, 0), top=(1, 1), left=(0, 1))
+    peg["outer"][0] |= {"elements": 100, "grading": {"ratio": 1000, "towards": "start"}}
+    bodies = {"peg": elastic(peg), "low": elastic(block((-40, 30), (-20, 0)), HELD)}
+    with pytest.raises(ProblemError, match="elements of 'peg/foot' are too short beside the length of 'low/top'"):
+        divided(first_mesh(problem(bodies, accuracy=0.01, c=["peg/foot", "low/top"])))

@@ -31,6 +31,58 @@ def test_a_slot_in_the_other_body_leaves_two_parts():
     assert np.allclose([part[1:] for part in found], [(0, 0.25), (0.75, 1)])
 
 
+@pytest.mark.parametrize("width", [0.05, 1e-5, 1e-7])
+@pytest.mark.parametrize(
+    "pair", [["w/top", ["d/narrow", "d/wide"]], [["d/narrow", "d/wide"], "w/top"], ["w", "d"], ["d", "w"]]
+)
+@pytest.mark.parametrize("lift", [0.0, 0.2])
+def test_a_foot_is_found_however_narrow_it_is_beside_the_other_edge(width, pair, lift):
+    """Of an edge of 70, opposite to feet of 3 and of a width. The pairs of a foot are straight below it."""
+    feet = polygon(
+        narrow=(-3, lift), one=(width - 3, lift), middle=(width - 3, 0.5), two=(1, 0.5), wide=(1, lift + 0.01),
+        three=(4, lift + 0.01), top=(4, 2), four=(-3, 2),
+    )  # fmt: skip
+    spec = problem({"d": elastic(feet), "w": elastic(block((-40, 30), (-20, 0)))}, accuracy=0.05, c=pair)
+    parts = [(part.high - part.low) * spec.edge(part.edge).length for part in spec.opposite("c")]
+    assert sorted(parts) == [pytest.approx(width, abs=1e-10), pytest.approx(3, abs=1e-10)]
+    onto = spec.zones["c"].surface
+    assert isinstance(onto, BodySurface)
+    assert abs(onto.approach[1]) == pytest.approx(lift, abs=1e-9)  # of the narrow foot, which is lower
+
+
+@pytest.mark.parametrize("pair", [["w/top", "d"], ["d", "w/top"]])
+def test_each_tooth_of_a_rigid_comb_is_found(pair):
+    """Twelve teeth of 0.001 at distances of 0.9, and between them a ceiling."""
+    teeth, x = dict[str, tuple[float, float]](), 0.0
+    for i in range(12):
+        x = 0.9 * i - 5
+        teeth |= {f"tooth {i}": (x, 0), f"right {i}": (x + 1e-3, 0)}
+        if i < 11:
+            teeth |= {f"ceiling {i}": (x + 1e-3, 9), f"left {i}": (x + 0.9, 9)}
+    comb = polygon(**teeth, top=(x + 1e-3, 11), side=(-5, 11))
+    spec = problem({"d": rigid(comb), "w": elastic(block((-50, 50), (-20, 0)))}, accuracy=0.05, c=pair)
+    onto = spec.zones["c"].surface
+    assert isinstance(onto, BodySurface)
+    under = [part for part in spec.opposite("c") if "tooth" in onto.edges[part.onto].name]
+    assert [100 * (part.high - part.low) for part in under] == 12 * [pytest.approx(1e-3, abs=1e-6)]
+
+
+@pytest.mark.parametrize("pair", [["w/top", "d/under"], ["d/under", "w/top"]])
+def test_a_small_disk_is_opposite_to_a_long_edge(pair):
+    """A half disk of radius 0.03 on an edge of 70: the pairs are where it is turned by less than 60 degrees."""
+    disk = {"outer": [{"name": "under", "kind": "arc", "start": [-0.03, 0.03], "end": [0.03, 0.03],
+                       "center": [0, 0.03]}, {"name": "top", "end": [-0.03, 0.03]}]}  # fmt: skip
+    spec = problem({"d": elastic(disk), "w": elastic(block((-40, 30), (-40, 0)))}, accuracy=0.05, c=pair)
+    (part,) = spec.opposite("c")
+    if pair[0] == "d/under":
+        assert (part.low, part.high) == (pytest.approx(1 / 6, abs=1e-9), pytest.approx(5 / 6, abs=1e-9))
+    else:
+        onto = spec.zones["c"].surface
+        assert isinstance(onto, BodySurface)
+        ends = onto.pairs(spec.edge("w/top").points(np.array([part.low, part.high]))).fraction
+        assert np.sort(ends) == pytest.approx([1 / 6, 5 / 6], abs=1e-6)
+
+
 @pytest.mark.parametrize("start", [0.0, 37.0, -90.0])
 def test_all_of_a_circle_is_opposite_to_a_bore_wherever_both_begin(start):
     plate = {**block((-9, 9), (-9, 9)), "holes": [[circle("bore", 5.1, start=120, hole=True)]]}
