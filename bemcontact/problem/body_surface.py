@@ -1,7 +1,7 @@
 """The boundary of a body as the surface that another body touches."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
 from typing import ClassVar, NamedTuple
@@ -199,6 +199,19 @@ class BodySurface:
                 normals[at, column] = chosen
                 gap[at, column] = np.sum((points[at] - joint) * chosen, axis=1) + self.offset
         return Faces(gap, normals, normals.copy())
+
+    @cached_property
+    def continued(self) -> "BodySurface":
+        """A surface with also the edges beyond its ends in which the boundary goes on smoothly."""
+        names = {edge.name for edge in self.edges}
+        more = dict[str, Edge]()
+        for edge, _, after in _neighbors(self.loops):
+            own, others = edge.normals(np.ones(1))[0], after.normals(np.zeros(1))[0]
+            smooth = abs(cross(own, others)) <= CORNER and np.dot(own, others) > 0
+            if smooth and (edge.name in names) != (after.name in names):
+                beyond = after if edge.name in names else edge
+                more[beyond.name] = beyond
+        return replace(self, edges=(*self.edges, *more.values()), nearest={}) if more else self
 
     @cached_property
     def ridges(self) -> Array:
