@@ -397,7 +397,9 @@ def test_load_shares_of_a_bearing_with_rigid_rings(load, gap):
 
 def by_zone(result):
     """Names of contacts, places and pressures of the shares of all points, in a fixed order, whoever owns a point."""
-    body, points = body_of(result.problem), body_of(result.problem).points
+    assert result.problem is not None
+    body = body_of(result.problem)
+    points = body.points
     zones = np.array([*result.problem.zones])[points.zone_of_share]
     places = body.mesh.nodes[body.mesh.elements[points.element, points.local]]
     keys = np.round(places, 9) + 0.0
