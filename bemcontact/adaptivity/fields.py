@@ -108,7 +108,7 @@ class CaseAnswer:
         contact, pressure = self.condensation.contact, self.solution.pressure
         block = ContactBlock(scaled=scale(contact), points=np.flatnonzero(pressure > 0))
         still = np.zeros(contact.free_motions)
-        moved = [scaled_change(contact, Change(-1.0 * (own > 0), still)) for own in contact.weights_by_zone]
+        moved = [scaled_change(contact, Change(-1.0 * (own > 0), still)) for own in contact.lengths_by_zone]
         try:
             pressures, _, amplitudes = block.solve(*moved)
         except SingularSystemError:

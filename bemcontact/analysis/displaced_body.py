@@ -86,7 +86,7 @@ class ProbedBody:
         if solution.status is not Status.SOLVED:
             raise BemContactError("contact does not hold the displaced body")
         state = boundary_state(there, solution.pressure, solution.rigid_amplitudes)
-        forces = self.body.points.tributary_by_zone(len(self.body.problem.zones)) @ solution.pressure
+        forces = np.abs(self.body.points.tributary_by_zone(len(self.body.problem.zones))) @ solution.pressure
         return elastic_displacement(self.body, state), forces
 
     def _product(self, one: Array, other: Array) -> float:

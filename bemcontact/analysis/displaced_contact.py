@@ -130,7 +130,7 @@ def load_after(
     """
     motions = body.free
     load = _load_of_turns(gaps, body, contact, solution, moved)
-    pressed = contact.weights_by_zone @ (solution.pressure > 0)
+    pressed = contact.lengths_by_zone @ (solution.pressure > 0)
     enough = least * pressed[pressed > 0].min() * (contact.weights @ solution.pressure)
     for number, part in enumerate(body.mesh.parts):
         center = _centroid(part.mesh)

@@ -294,7 +294,7 @@ def _forces_changed(
     own = contact.weights_by_zone
     was = (own * solution.pressure) @ contact.normals
     is_now = (own * again.pressure) @ (contact.normals + moved.turn)
-    total = own @ solution.pressure
+    total = contact.lengths_by_zone @ solution.pressure
     size = np.where(abs(was) >= SMALL_COMPONENT * total[:, None], abs(was), total[:, None])
     parts = abs(is_now - was) / np.where(size > 0, size, np.inf)
     alike = parts >= (1 - SAME) * parts.max()
@@ -302,7 +302,7 @@ def _forces_changed(
     part = float(parts[number, axis])
     if part < noted(gaps.problem):
         return None, ()
-    i = int(np.argmax(own[number] * solution.pressure))
+    i = int(np.argmax(abs(own[number]) * solution.pressure))
     zone = contact.zone_names[number]
     motion = _motion_in(contact, moved, int(number), np.maximum(solution.pressure, again.pressure))
     units = gaps.problem.units

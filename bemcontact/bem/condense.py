@@ -169,7 +169,7 @@ def matrix_of(body: Body) -> tuple[object, ...]:
     arrays = (
         body.mesh.nodes, body.mesh.elements, body.mesh.edge, body.mesh.part, values.displacement_given,
         values.traction_unknown, points.node, points.normals, points.element, points.local, points.point,
-        points.opposite.node, points.opposite.traction,
+        points.sense, points.opposite.traction, *points.moved,
     )  # fmt: skip
     materials = [part.material.model_dump_json() for part in body.problem.parts]
     return (*materials, *((array.shape, array.tobytes()) for array in arrays))
@@ -324,7 +324,7 @@ def _pressed(body: Body) -> Iterator[tuple[IntArray, IntArray, IntArray, Array]]
     """
     points, bonds = body.points, body.bonds
     other = points.opposite
-    yield points.element, points.local, points.point, points.normals[points.point]
+    yield points.element, points.local, points.point, points.tractions
     yield other.element, other.local, points.point[other.share], other.traction
     yield bonds.element, bonds.local, len(points) + bonds.direction, bonds.tractions
 

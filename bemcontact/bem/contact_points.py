@@ -13,6 +13,7 @@ from bemcontact.bem.mesh import BoundaryValues, Mesh, MeshPart
 from bemcontact.bem.outline import Outline
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.body_surface import AnySurface, BodySurface
+from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour
 from bemcontact.problem.surface_lines import Faces
 from bemcontact.problem.visibility import turned_to
@@ -106,9 +107,11 @@ class ContactPoints:
     faces : (n, 2) normals of the faces of the surface, as in `Faces`
     gap : (n,) ε [L]
     element, local, point : (q,) the (element, local node) pairs that carry the pressure of each point
+    sense : (q,) -1 where this pair belongs to a contact that states the two bodies the other way round, else 1
     held_arc : (runs, 2) arc position of the first and the last node of a piece if a condition holds it on the rigid
         surface, else not a number [L]
     held_points : (runs, 2, 2) these nodes [L]
+    tied : (N,) for each node the least of all that bonds make move with it
     elements_of_run : elements of each piece in order; none for a corner of the body that stands on a face by itself
     zone_of_run : number of the zone of each piece
     held : nodes of the zones that are no points
@@ -127,8 +130,10 @@ class ContactPoints:
     element: IntArray
     local: IntArray
     point: IntArray
+    sense: Array
     held_arc: Array
     held_points: Array
+    tied: IntArray
     elements_of_run: tuple[IntArray, ...] = ()
     zone_of_run: tuple[int, ...] = ()
     held: "HeldNodes | None" = None
@@ -136,31 +141,67 @@ class ContactPoints:
 
     @cached_property
     def opposite(self) -> Opposite:
-        """The other elastic body at the points."""
+        """The other elastic body at the points.
+
+        What contacts with equal sides share of a point has one pressure on each body, also across two bonded ones.
+        """
         node, facing = np.full(len(self), -1), np.full(len(self.point), -1)
         for zone, elements in self.facing.items():
             own = self.zone_of_share == zone
             facing[own] = elements[self.element[own]]
         share = np.flatnonzero(facing >= 0)
         element, local, point = facing[share], 2 - self.local[share], self.point[share]
-        node[point] = self.mesh.elements[element, local]
-        lengths = np.bincount(point, self.mesh.tributary[element, local], len(self))
-        factor = self.tributary[point] / lengths[point]
+        turned = (self.sense < 0).astype(int)
+        straight = turned[share] == 0
+        node[point[straight]] = self.mesh.elements[element, local][straight]
+        lengths, opposite = np.zeros((2, 2, len(self)))
+        np.add.at(lengths, (turned, self.point), self.mesh.tributary[self.element, self.local])
+        np.add.at(opposite, (turned[share], point), self.mesh.tributary[element, local])
+        factor = self.sense[share] * (lengths / np.where(opposite, opposite, 1.0))[turned[share], point]
         return Opposite(node, share, element, local, -factor[:, None] * self.normals[point])
+
+    @property
+    def tractions(self) -> Array:
+        """Traction (q, 2) by a unit pressure on each share."""
+        return self.sense[:, None] * self.normals[self.point]
+
+    @cached_property
+    def moved(self) -> tuple[IntArray, IntArray, Array]:
+        """Nodes (r,) whose displacement changes a gap, numbers (r,) of the points, and the change (r, 2) by it.
+
+        Bonded nodes that share a point count in proportion to the forces on them: then pressure and gap do the same
+        work in any motion, also in one that would part them.
+        """
+        other = self.opposite
+        has = np.flatnonzero(other.node >= 0)
+        node, gap = np.concatenate([self.node, other.node[has]]), np.concatenate([np.arange(len(self)), has])
+        change = np.concatenate([self.normals, -self.normals[has]])
+        element, local = np.append(self.element, other.element), np.append(self.local, other.local)
+        point, at = np.append(self.point, self.point[other.share]), self.mesh.elements[element, local]
+        far = np.where(other.node >= 0, other.node, self.node)
+        sides = np.column_stack([self.node, far])[point]
+        bonded = (at[:, None] != sides).all(axis=1) & (self.tied[at][:, None] == self.tied[sides]).any(axis=1)
+        shared = np.zeros(len(self), bool)
+        shared[point[bonded]] = True
+        forces = self.mesh.tributary[element, local, None] * np.concatenate([self.tractions, other.traction])
+        own, still = shared[point], ~shared[gap]
+        return (
+            np.append(node[still], at[own]),
+            np.append(gap[still], point[own]),
+            np.concatenate([change[still], forces[own] / self.tributary[point[own], None]]),
+        )
 
     def unit_pressures(self, part: MeshPart) -> UnitPressures:
         """Unit pressures on the mesh of one of the bodies."""
         other, m = self.opposite, len(self.mesh.elements)
-        has = np.flatnonzero(other.node >= 0)
         element, local, point = (
             np.concatenate(both)
             for both in (
                 (self.element, other.element), (self.local, other.local), (self.point, self.point[other.share]),
             )
         )  # fmt: skip
-        traction = np.concatenate([self.normals[self.point], other.traction])
-        node, gap = np.concatenate([self.node, other.node[has]]), np.concatenate([np.arange(len(self)), has])
-        change = np.concatenate([self.normals, -self.normals[has]])
+        traction = np.concatenate([self.tractions, other.traction])
+        node, gap, change = self.moved
         new = np.full(len(self.mesh.nodes), -1)
         new[part.nodes] = np.arange(len(part.mesh.nodes))
         elements = np.arange(m)[part.elements]
@@ -195,9 +236,10 @@ class ContactPoints:
         return np.where(own, zones, middle[:, self.element].argmax(axis=0))
 
     def tributary_by_zone(self, zones: int) -> Array:
-        """(zones, n) [L]: the parts of the tributary lengths in each zone."""
+        """(zones, n) [L]: the parts of the tributary lengths in each zone, negative with the sides exchanged."""
         lengths = np.zeros((zones, len(self)))
-        np.add.at(lengths, (self.zone_of_share, self.point), self.mesh.tributary[self.element, self.local])
+        signed = self.sense * self.mesh.tributary[self.element, self.local]
+        np.add.at(lengths, (self.zone_of_share, self.point), signed)
         return lengths
 
     @cached_property
@@ -247,11 +289,14 @@ def contact_points(
     of_zone, element = np.nonzero(in_zones)
     has[of_zone[:, None], mesh.elements[element]] = True
     choice = has.sum(axis=0) > 1
-    middles = mesh.elements[:, 1]
+    middles, tied = mesh.elements[:, 1], _tied(problem, mesh)
     for number, (name, zone) in enumerate(problem.zones.items()):
         in_zone, faces = in_zones[number], _faces(outline, zone.surface, deflections.get(name))
         other = isinstance(zone.surface, BodySurface) and zone.surface.elastic
-        for elements, closed in _between_corners(mesh, runs(mesh, in_zone), faces):
+        across = _across(mesh, mesh.facing.get(name))
+        apart = across.min(axis=0) >= 0
+        apart[apart] = tied[across[0, apart]] != tied[across[1, apart]]
+        for elements, closed in _between(mesh, runs(mesh, in_zone), faces.differs[:, 0] | apart):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
             gap, normals, lies = faces.along(nodes, closed=closed)
             loose = ~_held_along(normals, values.displacement_given[nodes])
@@ -264,16 +309,50 @@ def contact_points(
             pieces.append(
                 _Piece(
                     number, tool_of.get(name), elements, elements, length, goes_on, nodes[free], arc[free],
-                    normals[free], lies[free], gap[free], held, mesh.nodes[nodes[[0, -1]]],
+                    normals[free], lies[free], gap[free], _along(across, nodes, closed=closed)[free], held,
+                    mesh.nodes[nodes[[0, -1]]],
                     HeldNodes(np.full(len(nodes), number)[~loose], nodes[~loose], normals[~loose], gap[~loose]),
                 )
             )  # fmt: skip
         if not any(len(piece.nodes) for piece in pieces if piece.zone == number) and (in_zone & choice[middles]).any():
             message = "no node of its edges is turned to the surface; give these edges more elements"
             raise ProblemError(Issue(path=("contact_zones", name, "edges"), message=message))
-        pieces += _standing(mesh, number, tool_of.get(name), in_zone, faces, values.displacement_given)
+        pieces += _standing(mesh, number, tool_of.get(name), in_zone, faces, across, values.displacement_given)
     facing = {number: mesh.facing[name] for number, name in enumerate(problem.zones) if name in mesh.facing}
-    return replace(_joined(mesh, pieces), facing=facing)
+    return replace(_joined(mesh, pieces, tied), facing=facing)
+
+
+def _tied(problem: Problem, mesh: Mesh) -> IntArray:
+    """For each node (N,) the least of all nodes that bonds make move with it."""
+    tied = np.arange(len(mesh.nodes))
+    first, second = np.zeros((2, 0), int)
+    for facing in (mesh.facing[name] for name in problem.bonded):
+        own = facing >= 0
+        first = np.append(first, mesh.elements[own])
+        second = np.append(second, mesh.elements[facing[own], ::-1])
+    while len(first) and (tied[first] != tied[second]).any():
+        least = np.minimum(tied[first], tied[second])
+        np.minimum.at(tied, first, least)
+        np.minimum.at(tied, second, least)
+    return tied
+
+
+def _across(mesh: Mesh, facing: IntArray | None) -> IntArray:
+    """Node of the other body opposite to each node (2, N), on the element before it and on the one after; else -1."""
+    across = np.full((2, len(mesh.nodes)), -1)
+    if facing is not None:
+        own = np.flatnonzero(facing >= 0)
+        start, middle, end = mesh.elements[own].T
+        theirs = mesh.elements[facing[own]]
+        across[1, start], across[:, middle], across[0, end] = theirs[:, 2], theirs[:, 1], theirs[:, 0]
+    return across
+
+
+def _along(across: IntArray, nodes: IntArray, *, closed: bool) -> IntArray:
+    """Opposite nodes of those (k,) of a piece in order, on the side of each which is on the piece."""
+    side = np.ones(len(nodes), int)
+    side[-1] = 1 if closed else 0
+    return across[side, nodes]
 
 
 class HeldNodes(NamedTuple):
@@ -325,12 +404,10 @@ def _faces(outline: Outline, surface: AnySurface, deflection: Array | None) -> _
     return _NodeFaces(*held, other | (abs(held.gap - held.gap[:, [2, 0, 0]]) > ALIKE * outline.mesh.size))
 
 
-def _between_corners(
-    mesh: Mesh, runs: Iterable[tuple[IntArray, bool]], faces: _NodeFaces
-) -> Iterator[tuple[IntArray, bool]]:
-    """Divide runs at nodes that two faces of the surface hold."""
+def _between(mesh: Mesh, runs: Iterable[tuple[IntArray, bool]], divides: BoolArray) -> Iterator[tuple[IntArray, bool]]:
+    """Divide runs at nodes (N,) that two faces of the surface hold, or that have two opposite nodes."""
     for elements, closed in runs:
-        corner = faces.differs[mesh.elements[elements, 0], 0]
+        corner = divides[mesh.elements[elements, 0]]
         if closed and corner.any():
             first = int(np.argmax(corner))
             elements, corner, closed = np.roll(elements, -first), np.roll(corner, -first), False
@@ -339,7 +416,7 @@ def _between_corners(
 
 
 def _standing(
-    mesh: Mesh, zone: int, tool: str | None, in_zone: BoolArray, faces: _NodeFaces, given: BoolArray
+    mesh: Mesh, zone: int, tool: str | None, in_zone: BoolArray, faces: _NodeFaces, across: IntArray, given: BoolArray
 ) -> Iterator["_Piece"]:
     """Corners of the body that stand on a face of the surface to which neither side of them is turned."""
     for node in np.flatnonzero(faces.differs[: len(mesh.elements), 1] & (in_zone | in_zone[mesh.before])):
@@ -348,7 +425,7 @@ def _standing(
         if not _held_along(normals, given[nodes])[0]:
             yield _Piece(
                 zone, tool, elements, elements[:0], np.inf, (False, False), nodes, np.zeros(1), normals, normals,
-                faces.gap[[node], 1], np.full(2, np.nan), mesh.nodes[[node, node]], None,
+                faces.gap[[node], 1], across.max(axis=0)[nodes], np.full(2, np.nan), mesh.nodes[[node, node]], None,
             )  # fmt: skip
 
 
@@ -370,7 +447,10 @@ def _goes_on(
 
 
 class _Piece(NamedTuple):
-    """One run: zone, tool, elements beside its points and its own, length, points, held ends, and what is beyond."""
+    """One run: zone, tool, elements beside its points and its own, length, points, held ends, and what is beyond.
+
+    Points have the opposite node too, -1 on a rigid surface.
+    """
 
     zone: int
     tool: str | None
@@ -383,22 +463,25 @@ class _Piece(NamedTuple):
     normals: Array
     faces: Array
     gap: Array
+    opposite: IntArray
     held_arc: Array
     held_points: Array
     held: HeldNodes | None
 
 
-def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
+def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray) -> ContactPoints:
     """Join all runs, and find the (element, local node) pairs of every point."""
     sizes = [len(piece.nodes) for piece in pieces]
-    node, normals, gap = (
-        np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("nodes", "normals", "gap")
+    node, normals, gap, opposite = (
+        np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("nodes", "normals", "gap", "opposite")
     )
     tool = [piece.tool for piece, size in zip(pieces, sizes, strict=True) for _ in range(size)]
-    first_alike = _first_alike(mesh, node, normals, gap, tool)
+    sides = np.column_stack([tied[node], np.where(opposite >= 0, tied[opposite], -1)])
+    first_alike = _first_alike(mesh, sides, normals, gap, tool)
     own = first_alike == np.arange(len(node))
+    sense = np.where(np.sum(normals * normals[first_alike], axis=1) < 0, -1.0, 1.0)
     number = np.where(first_alike < 0, -1, (np.cumsum(own) - 1)[first_alike])
-    elements, points = [], []
+    elements, points, senses = [], [], []
     held_arc = np.array([piece.held_arc for piece in pieces])
     held_points = np.array([piece.held_points for piece in pieces])
     for row, (first, piece) in enumerate(zip(np.cumsum([0, *sizes]), pieces, strict=False)):
@@ -407,18 +490,22 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
                 held_arc[row, end], held_points[row, end] = piece.arc[i], mesh.nodes[piece.nodes[i]]
         point_of = np.full(len(mesh.nodes), -1)
         point_of[piece.nodes] = number[first : first + len(piece.nodes)]
-        carrier = point_of[mesh.elements[piece.elements]]
+        sense_of = np.ones(len(mesh.nodes))
+        sense_of[piece.nodes] = sense[first : first + len(piece.nodes)]
+        carrier, signs = point_of[mesh.elements[piece.elements]], sense_of[mesh.elements[piece.elements]]
         for goes_on, element, end in zip(piece.goes_on, (0, -1), (0, 2), strict=True):
             if goes_on:
                 carrier[element, end] = carrier[element, 1]
         elements.append(np.repeat(piece.elements, 3))
         points.append(carrier.ravel())
+        senses.append(signs.ravel())
     triples = np.column_stack(
         [np.concatenate(elements), np.tile(np.arange(3), sum(map(len, elements)) // 3), np.concatenate(points)]
     )
     code = (triples[:, 0] * 3 + triples[:, 1]) * (len(node) + 1) + triples[:, 2] + 1
     once = np.sort(np.unique(code, return_index=True)[1])  # zones that share an edge and a face share its points
-    element, local, point = triples[once[triples[once, 2] >= 0]].T
+    once = once[triples[once, 2] >= 0]
+    element, local, point = triples[once].T
     return ContactPoints(
         mesh=mesh,
         node=node[own],
@@ -432,23 +519,29 @@ def _joined(mesh: Mesh, pieces: list[_Piece]) -> ContactPoints:
         element=element,
         local=local,
         point=point,
+        sense=np.concatenate(senses)[once],
         held_arc=held_arc,
         held_points=held_points,
+        tied=tied,
         elements_of_run=tuple(piece.own for piece in pieces),
         zone_of_run=tuple(piece.zone for piece in pieces),
         held=HeldNodes(*map(np.concatenate, zip(*(piece.held for piece in pieces if piece.held), strict=True))),
     )
 
 
-def _first_alike(mesh: Mesh, node: IntArray, normals: Array, gap: Array, tool: Sequence[str | None]) -> IntArray:
-    """The first point (n,) with the same node, normal, gap and tool, which zones that meet on one surface share.
+def _first_alike(mesh: Mesh, sides: IntArray, normals: Array, gap: Array, tool: Sequence[str | None]) -> IntArray:
+    """The first point (n,) with the same nodes, normal, gap and tool, which contacts that meet on one surface share.
 
-    It is -1 for a point that another one with a smaller gap keeps from touching.
+    Nodes (n, 2) on both sides are one if they move together. Two contacts may state the sides the other way round. It
+    is -1 for a point that another one with a smaller gap keeps from touching.
     """
-    first = np.arange(len(node))
-    for j in np.flatnonzero(np.bincount(node)[node] > 1).tolist():
-        same = [i for i in np.flatnonzero(node == node[j]).tolist() if tool[i] == tool[j]]
-        same = [i for i in same if np.hypot(*(normals[i] - normals[j])) <= ALIKE]
+    first, pair = np.arange(len(sides)), np.sort(sides, axis=1)
+    _, place = np.unique(pair, axis=0, return_inverse=True)
+    place = place.reshape(-1)
+    for j in np.flatnonzero(np.bincount(place)[place] > 1).tolist():
+        same = [i for i in np.flatnonzero(place == place[j]).tolist() if tool[i] == tool[j]]
+        turned = {i: 1.0 if sides[i, 0] == sides[j, 0] else -1.0 for i in same}
+        same = [i for i in same if np.hypot(*(normals[i] - turned[i] * normals[j])) <= ALIKE]
         least = min(gap[i] for i in same)
         if gap[j] <= least + ALIKE * mesh.size:
             first[j] = next(i for i in same if gap[i] <= least + ALIKE * mesh.size)

@@ -179,12 +179,15 @@ class SurfaceGaps:
     def exact(self, zone: str, moved: Array) -> Closest:
         """Distance (...) [L] of displaced places (..., 2) from the displaced surface, and the normals there.
 
-        The place of an elastic body that is nearest then is that to which its motion there leads back.
+        The place of an elastic body that is nearest then is that to which its motion there leads back. What slides past
+        an end of the surface is opposite to the edge in which the boundary goes on smoothly.
         """
-        motion, surface = self.tool_motion(zone, moved), self.surfaces[zone]
+        surface = self.surfaces[zone]
+        surface = surface.continued if isinstance(surface, BodySurface) else surface
+        motion = self._motion_of(zone, surface, moved)
         if isinstance(surface, BodySurface) and surface.elastic:
-            motion = self.tool_motion(zone, moved - motion)
-        return self.undeformed(zone, moved - motion)
+            motion = self._motion_of(zone, surface, moved - motion)
+        return _closest(surface, moved - motion)
 
     def from_other_side(self, zone: str, moved: Array) -> Closest:
         """Distance (k,) [L] of displaced places (k, 2) of the second elastic body from the displaced first one.
@@ -201,17 +204,17 @@ class SurfaceGaps:
 
     def undeformed(self, zone: str, points: Array) -> Closest:
         """Distance (...) [L] of points (..., 2) from the undisplaced surface, and the normals there."""
-        surface, flat = self.surfaces[zone], points.reshape(-1, 2)
-        parts = [surface.closest(flat[i : i + CHUNK]) for i in range(0, max(len(flat), 1), CHUNK)]
-        gap, normals = (np.concatenate(part) for part in zip(*parts, strict=True))
-        return Closest(gap.reshape(points.shape[:-1]), normals.reshape(points.shape))
+        return _closest(self.surfaces[zone], points)
 
     def tool_motion(self, zone: str, points: Array, *, paired: bool = False) -> Array:
         """Displacement (..., 2) [L] of a surface at points (..., 2): that of its tool, or of the other elastic body.
 
         Of the latter at the nearest places, or where they form pairs with the points.
         """
-        surface = self.surfaces[zone]
+        return self._motion_of(zone, self.surfaces[zone], points, paired=paired)
+
+    def _motion_of(self, zone: str, surface: AnyShape, points: Array, *, paired: bool = False) -> Array:
+        """Displacement (..., 2) [L] of the surface of a zone, or of one that goes on from it, as of `tool_motion`."""
         if isinstance(surface, BodySurface) and surface.elastic:
             return self._motion_of(surface, points, paired=paired)
         for name, tool in self.problem.tools.items():
@@ -558,6 +561,14 @@ def surface_gaps(body: Body, state: BoundaryState, contact: CondensedContact, so
     moved = contact.tools.displacement(solution.rigid_amplitudes)
     tools = dict(zip(contact.tools.names, moved, strict=True))
     return SurfaceGaps(problem=body.problem, outline=body.outline, state=state, tools=tools)
+
+
+def _closest(surface: AnyShape, points: Array) -> Closest:
+    """Distance (...) [L] of points (..., 2) from a surface, and the normals there."""
+    flat = points.reshape(-1, 2)
+    parts = [surface.closest(flat[i : i + CHUNK]) for i in range(0, max(len(flat), 1), CHUNK)]
+    gap, normals = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return Closest(gap.reshape(points.shape[:-1]), normals.reshape(points.shape))
 
 
 def _opposite(end: FaceEnd, feet: Array, normals: Array, flush: float) -> BoolArray:

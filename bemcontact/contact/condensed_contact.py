@@ -60,8 +60,9 @@ class CondensedContact(WithHints, MotionAlgebra):
     motion_load : (k,) work of the applied loads in these motions, [p L] for a motion of unit displacement
     initial_gap : (n,) ε [L]
     weights : (n,) tributary weights [L]: Σ w p n is the force of the rigid surface
-    zone_weights : (zones, n) parts of the weights that belong to each zone, for a point between two zones; None where
-        each point belongs to its zone alone [L]
+    zone_weights : (zones, n) parts of the weights that belong to each zone, for a point between two zones, negative
+        where the normal is out of the body that the zone names first; None where each point belongs to its zone alone
+        [L]
     consistent_weights : (n, n) ∫ h hᵀ ds [L], or None where no mesh stands behind the problem
     element_length_weights : (n,) [L], or None likewise
     held_arc : (number of runs, 2) arc position of a run's ends that a condition holds on the rigid surface, up to which
@@ -392,10 +393,15 @@ class CondensedContact(WithHints, MotionAlgebra):
 
     @property
     def weights_by_zone(self) -> Array:
-        """The weights (zones, n) in each zone [L]: zero for points of other zones."""
+        """The weights (zones, n) in each zone [L]: zero for points of other zones; signs as of `zone_weights`."""
         if self.zone_weights is not None:
             return self.zone_weights
         return self.weights * (self.zone == np.arange(len(self.zone_names))[:, None])
+
+    @property
+    def lengths_by_zone(self) -> Array:
+        """The lengths (zones, n) that belong to each point in each zone [L], which are not negative."""
+        return np.abs(self.weights_by_zone)
 
     def forces(self, pressure: Array) -> Array:
         """Forces w p n (..., n, 2) [p L] at the contact points, from p (..., n) [p]."""

@@ -29,9 +29,9 @@ def ensure_arrays(contact: Any) -> None:
     if not (contact.weights > 0).all():
         raise ProblemError(f"weights must be positive; the smallest is {contact.weights.min():.3g}")
     if contact.zone_weights is not None:
-        total = contact.zone_weights.sum(axis=0)
-        if (contact.zone_weights < 0).any() or (np.abs(total - contact.weights) > UNIT * contact.weights).any():
-            raise ProblemError("zone_weights must not be negative, and add up to the weights")
+        total = np.abs(contact.zone_weights).sum(axis=0)
+        if (np.abs(total - contact.weights) > UNIT * contact.weights).any():
+            raise ProblemError("the magnitudes of zone_weights must add up to the weights")
     lengths = np.hypot(*contact.normals.T)
     if (wrong := np.abs(lengths - 1.0) > UNIT).any():
         i = int(np.argmax(wrong))

@@ -1,7 +1,7 @@
 """The boundary of a body as the surface that another body touches."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain, permutations
 from typing import ClassVar, NamedTuple
@@ -274,6 +274,19 @@ class BodySurface:
         for column in range(3):
             there = ridge_beside(offset, own[:, column], held.normals[:, column], before, after)
             held.put(smooth & there.counts, column, there.gap + self.offset, there.normals, there.faces)
+
+    @cached_property
+    def continued(self) -> "BodySurface":
+        """A surface with also the edges beyond its ends in which the boundary goes on smoothly."""
+        names = {edge.name for edge in self.edges}
+        more = dict[str, Edge]()
+        for edge, _, after in _neighbors(self.loops):
+            own, others = edge.normals(np.ones(1))[0], after.normals(np.zeros(1))[0]
+            smooth = abs(cross(own, others)) <= CORNER and np.dot(own, others) > 0
+            if smooth and (edge.name in names) != (after.name in names):
+                beyond = after if edge.name in names else edge
+                more[beyond.name] = beyond
+        return replace(self, edges=(*self.edges, *more.values()), nearest={}) if more else self
 
     @cached_property
     def ridges(self) -> Array:

@@ -1,12 +1,14 @@
 """Where an edge of the body is nearest to a rigid surface."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.problem.body_surface import AnyShape, AnySurface, BodySurface
+from bemcontact.problem.bodies import SEPARATOR
+from bemcontact.problem.body_surface import AnyShape, AnySurface, BodySurface, BodyZone
 from bemcontact.problem.curves import Curve, Edge
 from bemcontact.problem.edge_places import STEEPEST, TIE, places_along
 from bemcontact.problem.surface_lines import Polyline
@@ -93,6 +95,46 @@ def approach(edges: Sequence[Edge], surface: BodySurface) -> Point:
         moved = least * normals[gap.argmin()]
     touches = abs(normals[near] @ moved - gap[near]).max() <= NEARLY * abs(least)
     return (float(moved[0]), float(moved[1])) if touches else (0.0, 0.0)
+
+
+def approached(zones: Mapping[str, BodyZone], edges: Mapping[str, Edge]) -> Iterator[tuple[str, BodyZone]]:
+    """Zones of bodies that touch other elastic ones, moved there as drawn: by name, with all edges by name.
+
+    What one contact states, several may state, each with some of the edges, whichever side is the first: so all that
+    meet on both bodies are moved by one displacement.
+    """
+    sides = {
+        name: (tuple(edges[edge] for edge in zone.edges), zone.surface.edges)
+        for name, zone in zones.items()
+        if zone.surface.share
+    }
+    moved: dict[str, Point] = {}
+    for name, (own, other) in sides.items():
+        if name in moved:
+            continue
+        group, signs = {name: (own, other)}, {name: 1.0}
+        for _ in sides:
+            for more, pair in sides.items():
+                for sign, (one, two) in ((1.0, pair), (-1.0, pair[::-1])):
+                    met = (_meet(one, its) and _meet(two, theirs) for its, theirs in group.values())
+                    if more not in group and any(met):
+                        group[more], signs[more] = (one, two), sign
+        first, second = (tuple(dict.fromkeys(edge for pair in group.values() for edge in pair[i])) for i in (0, 1))
+        x, y = approach(first, replace(zones[name].surface, edges=second, nearest={}))
+        moved |= {each: (sign * x, sign * y) for each, sign in signs.items()}
+    for name, zone in zones.items():
+        yield name, replace(zone, surface=replace(zone.surface, approach=moved.get(name, (0.0, 0.0))))
+
+
+def _meet(edges: Sequence[Edge], others: Sequence[Edge]) -> bool:
+    """Whether edges and others have one in common, or go on in one another, on one body."""
+    return any(
+        one.name == other.name
+        or (one.name.partition(SEPARATOR)[0] == other.name.partition(SEPARATOR)[0] and one.end == other.start)
+        for first, second in ((edges, others), (others, edges))
+        for one in first
+        for other in second
+    )
 
 
 class SurfaceCorner(NamedTuple):

@@ -27,7 +27,7 @@ from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import CircularArc, Edge
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.material import Material
-from bemcontact.problem.nearest_places import approach
+from bemcontact.problem.nearest_places import approached
 from bemcontact.problem.pairing import OppositePart, opposite_parts
 from bemcontact.problem.units import Units
 from bemcontact.problem.validation import Name, SpecModel, Text, Title, left_out
@@ -189,16 +189,16 @@ class StatedBodies(SpecModel):
             return self.contact_zones
         if not self._zones:
             self._zones.update(self.contact_zones)
-            self._zones.update(
-                (name, self._zone_of(contact.between, contact.gap)) for name, contact in self.contacts.items()
-            )
+            of_contacts = {name: self._zone_of(item.between, item.gap) for name, item in self.contacts.items()}
+            self._zones.update(approached(of_contacts, {edge.name: edge for edge in self.edges}))
         return self._zones
 
     @property
     def bonds(self) -> Mapping[str, BodyZone]:
         """The bonded interfaces, each as a zone of the first body on the surface of the second one."""
         if len(self._bonds) < len(self.bonded):
-            self._bonds.update((name, self._zone_of(sides, 0.0)) for name, sides in self.bonded.items())
+            of_bonds = {name: self._zone_of(sides, 0.0) for name, sides in self.bonded.items()}
+            self._bonds.update(approached(of_bonds, {edge.name: edge for edge in self.edges}))
         return self._bonds
 
     def _zone_of(self, between: tuple[Sequence[str], Sequence[str]], gap: float) -> BodyZone:
@@ -223,7 +223,7 @@ class StatedBodies(SpecModel):
         if elastic:
             own = tuple(edge for edge in self.edges if edge.name in edges)
             share = self._share_of_first(_body_in(first), body)
-            surface = replace(surface, share=share, first=own, first_loops=own_loops, approach=approach(own, surface))
+            surface = replace(surface, share=share, first=own, first_loops=own_loops)
         return BodyZone(edges=edges, surface=surface)
 
     def _share_of_first(self, first: str, second: str) -> float:

@@ -75,7 +75,7 @@ def _of_whole(result: Result) -> Iterator[tuple[str, Reading]]:
 def _of_zones(result: Result) -> Iterator[tuple[str, Reading]]:
     """Forces of each zone, and its number of contact intervals."""
     bars = {bar.zone: bar for bar in result.accuracy.bars if bar.quantity == "force"}
-    sums = result.contact.weights_by_zone @ np.abs(result.solution.pressure)
+    sums = result.contact.lengths_by_zone @ np.abs(result.solution.pressure)
     for zone, total in zip(result.contact.zone_names, sums.tolist(), strict=True):
         count = sum(item.zone == zone for item in result.footprint.intervals)
         total = total if count else 0.0

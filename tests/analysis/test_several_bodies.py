@@ -11,6 +11,7 @@ from roller_bearings import ROLLERS, bearing, load_shares
 from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, problem, rigid, stated
 
 import bemcontact
+from bemcontact.bem.body import body_of
 from bemcontact.report.facts import facts
 from bemcontact.report.result_page import render
 from bemcontact.report.zones import largest_stresses_csv
@@ -462,3 +463,170 @@ def test_an_edge_that_is_not_named_penetrates_whichever_side_is_first(pair):
     assert result.penetration is not None
     assert (result.penetration.edge, result.penetration.zone) == ("d/narrow", "c")
     assert 0.5 * 0.03 < result.penetration.depth < 0.03
+
+
+def by_zone(result):
+    """Names of contacts, places and pressures of the shares of all points, in a fixed order, whoever owns a point."""
+    assert result.problem is not None
+    body = body_of(result.problem)
+    points = body.points
+    zones = np.array([*result.problem.zones])[points.zone_of_share]
+    places = body.mesh.nodes[body.mesh.elements[points.element, points.local]]
+    keys = np.round(places, 9) + 0.0
+    order = np.lexsort((*keys.T, np.unique(zones, return_inverse=True)[1]))
+    return zones[order], keys[order], result.solution.pressure[points.point[order]]
+
+
+def assert_same_pressures(one, other):
+    (zones, places, pressure), (their_zones, their_places, theirs) = by_zone(one), by_zone(other)
+    np.testing.assert_array_equal(zones, their_zones)
+    np.testing.assert_allclose(places, their_places, atol=1e-8)
+    np.testing.assert_allclose(pressure, theirs, rtol=0, atol=1e-8 * pressure.max())
+
+
+SIDES = {"left": {"pressure": 2.0}, "right": {"pressure": 2.0}}
+
+
+def on_two(moduli, orders, pressed, n=8):
+    """A block on two others that touch each other below its middle, and the contacts with the sides in some order."""
+    side = {name: SIDES[name] for name in pressed}
+    bodies = {
+        "up": elastic(block((-2, 2), (0, 1), (2 * n, 4, n, 4)), {"top": {"pressure": 3.0}, **(SIDES if side else {})}),
+        "l": elastic(
+            block((-2, 0), (-2, 0), (n, n, n, n)),
+            {"bottom": {"displacement": {"y": 0}}, "left": side.get("left", {"displacement": {"x": 0}})},
+            moduli[0],
+        ),
+        "r": elastic(
+            block((0, 2), (-2, 0), (n, n, n, n)),
+            {"bottom": {"displacement": {"y": 0}}, "right": side.get("right", {"displacement": {"x": 0}})},
+            moduli[1],
+        ),
+    }
+    pairs = {"cl": ["up/bottom", "l/top"], "cr": ["up/bottom", "r/top"], "m": ["l/right", "r/left"]}
+    return bodies, {name: pairs[name][::order] for name, order in zip(pairs, orders, strict=True)}
+
+
+ORDERS = [(1, 1, 1), (-1, -1, 1), (1, -1, -1), (-1, 1, 1)]
+
+
+def on_two_solved(moduli, orders, pressed=()):
+    bodies, contacts = on_two(moduli, orders, pressed)
+    return solved(bodies, **contacts)
+
+
+@pytest.mark.parametrize("orders", ORDERS)
+def test_a_cut_where_all_presses_changes_nothing(orders):
+    """The state of constant stress of an undivided block under a block, at any joint: to round-off on any mesh."""
+    result = on_two_solved((1000.0, 1000.0), orders, SIDES)
+    assert result.certified
+    zones, _, pressure = by_zone(result)
+    np.testing.assert_allclose(pressure[zones != "m"], 3.0, rtol=1e-9)
+    np.testing.assert_allclose(pressure[zones == "m"], 2.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize("orders", ORDERS[1:])
+def test_a_node_on_two_bodies_has_a_gap_to_each(orders):
+    """Bodies of different stiffness below it: it may be off one and press on the other, whichever sides are first."""
+    one, other = (on_two_solved((300.0, 3000.0), order) for order in (ORDERS[0], orders))
+    assert one.certificate.kind.value == other.certificate.kind.value == "unique"
+    assert_same_pressures(one, other)
+    zones, places, pressure = by_zone(one)
+    soft, stiff = (pressure[(zones == name) & ~places.any(axis=1)] for name in ("cl", "cr"))
+    assert len(soft) == len(stiff) == 1
+    assert soft[0] < stiff[0]
+
+
+def halves(orders, floor):
+    """Two bonded halves of a block under pressure on a floor."""
+    pressed = {"top": {"pressure": 0.5}}
+    bodies = {
+        "l": elastic(block((-3, 1), (0, 2), (8, 6, 8, 6)), {**pressed, "left": {"displacement": {"x": 0}}}),
+        "r": elastic(block((1, 3), (0, 2), (4, 6, 4, 6)), pressed),
+        "floor": floor,
+    }
+    pairs = {"cl": ["l/bottom", "floor/top"], "cr": ["r/bottom", "floor/top"]}
+    contacts = {name: {"between": pair[::order]} for (name, pair), order in zip(pairs.items(), orders, strict=True)}
+    bonded = {"glue": ["l/right", "r/left"]}
+    return bemcontact.solve(stated(name="halves", bodies=bodies, contacts=contacts, bonded=bonded, accuracy=None))
+
+
+@pytest.mark.parametrize("orders", [(-1, -1), (1, -1)])
+def test_bonded_bodies_have_one_point_where_their_joint_meets_another_body(orders):
+    """Whichever sides are first: the elements are the same. The compliance is definite, as that of one body is."""
+    floor = elastic(block((-5, 5), (-3, 0), (20, 6, 20, 6)), HELD, 500.0)
+    one, other = halves((1, 1), floor), halves(orders, floor)
+    assert one.certificate.kind.value == other.certificate.kind.value == "unique"
+    assert_same_pressures(one, other)
+    joint = ~(by_zone(one)[1] - (1, 0)).any(axis=1)
+    assert joint.sum() == 2
+    assert len({*by_zone(one)[2][joint]}) == 1
+
+
+def test_bonded_bodies_on_a_rigid_one_are_one_body():
+    result = halves((1, 1), rigid(block((-5, 5), (-3, 0))))
+    assert result.certificate.kind.value == "unique"
+    np.testing.assert_allclose(result.solution.pressure, 0.5, rtol=1e-9)
+
+
+def on_two_edges(contacts):
+    """A block on another one whose top is two edges."""
+    lower = polygon(bottom=(-4, -4), right=(4, -4), t1=(4, 0), t2=(1, 0), left=(-4, 0))
+    for edge, elements in zip(lower["outer"], (6, 6, 6, 10, 6), strict=True):
+        edge["elements"] = elements
+    up = elastic(block((-3, 2), (0, 2), (10, 6, 10, 6)), {"top": {"displacement": {"x": 0, "y": -0.01}}})
+    return solved({"up": up, "low": elastic(lower, HELD, 2000.0)}, **contacts)
+
+
+PARTS = {"c": ["up/bottom", "low/t1"], "e": ["up/bottom", "low/t2"]}
+
+
+@pytest.mark.parametrize("turned", [{}, {"c": ["low/t1", "up/bottom"]}, {"e": ["low/t2", "up/bottom"]}])
+def test_one_contact_is_two_with_the_parts_of_its_edge(turned):
+    """The elements are the same, whichever side of each is the first; forces are those on the first side."""
+    one = on_two_edges({"whole": {"between": ["up/bottom", ["low/t1", "low/t2"]]}})
+    two = on_two_edges(PARTS | turned)
+    assert two.certificate.kind.value == "unique"
+    assert two.penetration is None
+    assert two.contact.size == one.contact.size
+    order = [np.lexsort(np.round(result.contact.points.T, 9)) for result in (one, two)]
+    np.testing.assert_allclose(
+        two.solution.pressure[order[1]],
+        one.solution.pressure[order[0]],
+        rtol=0,
+        atol=1e-8 * one.solution.pressure.max(),
+    )
+    signs = np.array([-1.0 if name in turned else 1.0 for name in PARTS])
+    np.testing.assert_allclose(
+        signs @ [two.footprint.forces[name] for name in PARTS], one.footprint.forces["whole"], atol=1e-9
+    )
+    np.testing.assert_allclose(
+        signs @ [two.footprint.moments[name] for name in PARTS], one.footprint.moments["whole"], atol=1e-9
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("turned", [{}, {"c": ["w/t1", "d/under"]}])
+def test_a_disk_holds_on_a_line_of_two_edges(turned):
+    """It slides past the joint, where the surface of neither contact ends for it: the line goes on."""
+    disk = {
+        "outer": [
+            {"name": "under", "kind": "arc", "start": [-3, 3], "end": [3, 3], "center": [0, 3]},
+            {"name": "top", "end": [-3, 3]},
+        ]
+    }
+    bodies = {
+        "d": elastic(disk, {"top": {"displacement": {"x": 0, "y": -0.05}}}),
+        "w": elastic(polygon(bottom=(-4, -4), right=(4, -4), t1=(4, 0), t2=(0.1, 0), left=(-4, 0)), HELD, 2000.0),
+    }
+    one = solved(bodies, accuracy=0.01, c={"between": ["d/under", ["w/t1", "w/t2"]]})
+    two = solved(bodies, accuracy=0.01, **({"c": ["d/under", "w/t1"], "e": ["d/under", "w/t2"]} | turned))
+    assert two.holds
+    bars = [bar for result in (one, two) for bar in result.accuracy.bars if bar.quantity in ("peak", "force")]
+    known = [(bar.quantity, bar.value or 0.0, (bar.value or 0.0) * (bar.bar or 0.0)) for bar in bars]
+    allowed = {name: sum(error for quantity, _, error in known if quantity == name) for name in ("peak", "force")}
+    assert one.footprint.peak is not None
+    assert two.footprint.peak is not None
+    assert abs(one.footprint.peak.pressure - two.footprint.peak.pressure) <= allowed["peak"]
+    (_, c), (_, e) = (two.footprint.forces[name] for name in "ce")
+    assert abs((-c if turned else c) + e - one.footprint.forces["c"][1]) <= allowed["force"]

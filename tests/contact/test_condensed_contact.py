@@ -76,7 +76,7 @@ def test_arrays_are_read_only():
         ({"motion_arms": np.zeros(2)}, "motion_arms must be positive, and infinite for a translation"),
         ({"motion_arms": np.ones(3)}, r"motion_arms has shape \(3,\) where \(2,\) is needed"),
         ({"weights": np.zeros(12)}, "weights must be positive; the smallest is 0"),
-        ({"zone_weights": np.zeros((1, 12))}, "zone_weights must not be negative, and add up to the weights"),
+        ({"zone_weights": np.zeros((1, 12))}, "the magnitudes of zone_weights must add up to the weights"),
     ],
 )
 def test_arrays_that_state_no_problem_are_refused(changes, text):
