@@ -197,8 +197,8 @@ class SurfaceGaps:
         surface = self.surfaces[zone]
         assert isinstance(surface, BodySurface)
         first = surface.other_side
-        motion = self._motion_of(first, moved)
-        places = moved - self._motion_of(first, moved - motion)
+        motion = self._motion_of_body(first, moved)
+        places = moved - self._motion_of_body(first, moved - motion)
         gap, normals = first.closest(places)
         return Closest(gap, -(normals + self._turn_of(first, places, normals)))
 
@@ -216,7 +216,7 @@ class SurfaceGaps:
     def _motion_of(self, zone: str, surface: AnyShape, points: Array, *, paired: bool = False) -> Array:
         """Displacement (..., 2) [L] of the surface of a zone, or of one that goes on from it, as of `tool_motion`."""
         if isinstance(surface, BodySurface) and surface.elastic:
-            return self._motion_of(surface, points, paired=paired)
+            return self._motion_of_body(surface, points, paired=paired)
         for name, tool in self.problem.tools.items():
             if zone in tool.zones:
                 x, y, turn = self.tools[name]
@@ -231,7 +231,7 @@ class SurfaceGaps:
             return self.tool_motion(zone, normals) - self.tool_motion(zone, np.zeros((1, 2)))
         return self._turn_of(surface, points, normals)
 
-    def _motion_of(self, surface: BodySurface, points: Array, *, paired: bool = False) -> Array:
+    def _motion_of_body(self, surface: BodySurface, points: Array, *, paired: bool = False) -> Array:
         """Displacement (..., 2) [L] of an elastic body at places opposite to points (..., 2)."""
         feet = (surface.pairs if paired else surface.feet)(points.reshape(-1, 2))
         element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)

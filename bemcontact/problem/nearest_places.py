@@ -106,7 +106,7 @@ def approached(zones: Mapping[str, BodyZone], edges: Mapping[str, Edge]) -> Iter
     sides = {
         name: (tuple(edges[edge] for edge in zone.edges), zone.surface.edges)
         for name, zone in zones.items()
-        if zone.surface.share
+        if zone.surface.first
     }
     moved: dict[str, Point] = {}
     for name, (own, other) in sides.items():
