@@ -379,6 +379,7 @@ BESIDE = {
 WITHOUT_MODULE = {
     "test_architecture.py": "the package as a whole",
     "test_packaging.py": "the wheel",
+    "analysis/test_corners_of_bodies.py": "corners of several bodies, through all rooms",
     "analysis/test_several_bodies.py": "several bodies through all rooms, from spec to result",
     "analysis/test_two_bodies.py": "two elastic bodies against closed forms, through all rooms",
     "cli/test_hostile_input.py": "hidden characters, full disks and little memory, through all rooms",

@@ -29,7 +29,8 @@ class Inside(NamedTuple):
 def deepest_inside(gaps: SurfaceGaps, zone: str) -> Inside | None:
     """Deepest place on an edge of the second body that no contact of both bodies has; None if there is no such edge.
 
-    A place counts that is outside as drawn and not nearest to a corner, beside which it may slide.
+    A place counts that is outside as drawn. One does not that is nearest to a corner of the first body, beside which it
+    may slide, or that is nearer to an end of contact on its own body than both slide.
     """
     problem, surface = gaps.problem, gaps.surfaces[zone]
     if not isinstance(surface, BodySurface) or (first := problem.part_of(problem.edges_of(zone)[0])) == surface.body:
@@ -46,6 +47,8 @@ def deepest_inside(gaps: SurfaceGaps, zone: str) -> Inside | None:
     there = np.einsum("ki,kix->kx", reference_element.values(xi), gaps.state.displacement[element])
     depth = -(feet.gap + np.sum(feet.normals * (moved - there), axis=1))
     depth[feet.at_corner | (feet.gap < -FLUSH * problem.size)] = -np.inf
+    for corner in surface.ridges:
+        depth[np.hypot(*(points - corner).T) <= np.hypot(*(moved - there).T)] = -np.inf
     i = int(depth.argmax())
     return Inside(float(depth[i]), points[i], edges[i])
 
