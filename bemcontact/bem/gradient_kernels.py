@@ -47,7 +47,7 @@ def far_integrals(tau: ComplexArray, order: int) -> GradientIntegrals:
 
 @cache
 def _shapes(order: int) -> tuple[ComplexArray, ComplexArray]:
-    """Shape functions (3, order) at the Gauss points, and (order, 3) times the weights, of the type of what they multiply."""
+    """Shape functions (3, order) at the Gauss points, and (order, 3) times the weights; complex as their factors."""
     xi, weights = gauss_legendre(order)
     shapes = reference_element.values(xi)
     return shapes.T.astype(complex), (shapes * weights[:, None]).astype(complex)
