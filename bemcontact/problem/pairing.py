@@ -1,6 +1,8 @@
 """Which parts of the edges of two elastic bodies are opposite to each other."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +17,7 @@ SAMPLES = 512
 SECTIONS = 16
 """Sections into which the part of an edge with such an end is cut at a time."""
 CUTS = 15
-"""Times that it is cut: then it is as short as round-off."""
+"""Most times that it is cut: then it is as short as round-off."""
 HALF = 0.5
 """Difference of fractions of an edge between two samples from which its end is between them."""
 INSIDE = 1e-9
@@ -24,6 +26,10 @@ SHORTEST = 1e-6
 """Least length of an opposite part over that of its edge: shorter ones are round-off of coordinates and corners."""
 SAME = 1e-12
 """Difference of two fractions of an edge that is round-off."""
+
+
+KEPT = 64
+"""Pairs of sides whose parts are kept."""
 
 
 class OppositePart(NamedTuple):
@@ -48,8 +54,31 @@ def opposite_parts(edges: Sequence[Edge], surface: BodySurface, reach: float = n
     A place is opposite to the surface if it is turned to it and forms a pair with a place there. That of a rigid
     surface may be a corner both sides of which the place is turned to.
     """
-    most = _largest_gap(edges, surface, reach)
-    return [part for edge in edges for part in _parts_of(edge, surface, most)]
+    return list(_found_once(_TwoSides(_shape(edges, surface), edges, surface), reach))
+
+
+@dataclass(frozen=True)
+class _TwoSides:
+    """Edges and a surface, equal to others of the same shape: a problem with another load has the same parts."""
+
+    shape: tuple[object, ...]
+    edges: Sequence[Edge] = field(compare=False)
+    surface: BodySurface = field(compare=False)
+
+
+def _shape(edges: Sequence[Edge], surface: BodySurface) -> tuple[object, ...]:
+    """All that opposite parts depend on, but for the reach."""
+    others = (surface.edges, surface.first, *surface.loops)
+    own = tuple((edge.name, edge.curve, edge.start, edge.end) for edge in edges)
+    shapes = (tuple((edge.curve, edge.start, edge.end) for edge in some) for some in others)
+    return own, surface.elastic, surface.share, *shapes
+
+
+@lru_cache(maxsize=KEPT)
+def _found_once(sides: _TwoSides, reach: float) -> tuple[OppositePart, ...]:
+    """Look for the parts as of `opposite_parts`."""
+    most = _largest_gap(sides.edges, sides.surface, reach)
+    return tuple(part for edge in sides.edges for part in _parts_of(edge, sides.surface, most))
 
 
 def _largest_gap(edges: Sequence[Edge], surface: BodySurface, reach: float) -> float:
@@ -79,12 +108,13 @@ def _parts_of(edge: Edge, surface: BodySurface, most: float) -> list[OppositePar
     at = np.linspace(0.0, 1.0, SAMPLES + 1)
     onto, there = opposite(np.clip(at, INSIDE, 1 - INSIDE))  # on a corner of the surface two edges are nearest
     changes = np.flatnonzero((np.diff(onto) != 0) | (abs(np.diff(there)) > HALF))
-    starts, ends = [(0.0, int(onto[0]))], []
-    for i in changes.tolist():
-        low, high = float(at[i]), float(at[i + 1])
-        ends.append(_last(opposite, low, high, int(onto[i]), float(there[i])))
-        starts.append((_last(opposite, high, low, int(onto[i + 1]), float(there[i + 1])), int(onto[i + 1])))
-    ends.append(1.0)
+    within = [*zip(at[changes], at[changes + 1], changes, strict=True)]
+    within += [(high, low, i + 1) for low, high, i in within]
+    begin, end, known = (np.array(part) for part in zip(*within, strict=True)) if within else np.zeros((3, 0))
+    known = known.astype(int)
+    last = _last(opposite, begin, end, onto[known], there[known]).tolist()
+    ends = [*last[: len(changes)], 1.0]
+    starts = [(0.0, int(onto[0])), *zip(last[len(changes) :], onto[changes + 1].tolist(), strict=True)]
     return [
         OppositePart(edge.name, low, high, number)
         for (low, number), high in zip(starts, ends, strict=True)
@@ -93,17 +123,21 @@ def _parts_of(edge: Edge, surface: BodySurface, most: float) -> list[OppositePar
 
 
 def _last(
-    opposite: Callable[[Array], tuple[IntArray, Array]], start: float, stop: float, number: int, there: float
-) -> float:
-    """Last place from a start towards a stop that is opposite to the edge of a number, on the side of a fraction.
+    opposite: Callable[[Array], tuple[IntArray, Array]], start: Array, stop: Array, number: IntArray, there: Array
+) -> Array:
+    """Last places (k,) from starts towards stops that are opposite to edges of numbers, on the side of fractions.
 
     A full circle is one edge, whose end is its start.
     """
-    for _ in range(CUTS):
-        places = np.linspace(start, stop, SECTIONS + 1)
-        onto, fraction = opposite(places[1:-1])
-        other = np.append((onto != number) | (abs(fraction - there) > HALF), True)
-        first = int(other.argmax())
-        start, stop = places[first], places[first + 1]
-    ends = (edge_end for edge_end in (0.0, 1.0) if abs(start - edge_end) <= SAME)
-    return next(ends, start)
+    rows = np.arange(len(start))
+    for _ in range(CUTS if len(start) else 0):
+        places = np.linspace(start, stop, SECTIONS + 1, axis=1)
+        onto, fraction = (part.reshape(len(rows), -1) for part in opposite(places[:, 1:-1].ravel()))
+        other = (onto != number[:, None]) | (abs(fraction - there[:, None]) > HALF)
+        first = np.where(other.any(axis=1), other.argmax(axis=1), SECTIONS - 1)
+        start, stop = places[rows, first], places[rows, first + 1]
+        if (np.nextafter(start, stop) == stop).all():
+            break
+    for edge_end in (1.0, 0.0):
+        start = np.where(abs(start - edge_end) <= SAME, edge_end, start)
+    return start
