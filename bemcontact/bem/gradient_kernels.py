@@ -16,6 +16,7 @@ in `kernels`: the poles at r and at s = conj r are integrated in closed form, an
 are formed without subtracting equal numbers.
 """
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -38,12 +39,18 @@ class GradientIntegrals(NamedTuple):
 
 def far_integrals(tau: ComplexArray, order: int) -> GradientIntegrals:
     """Gauss's rule, for pairs with a root that is far enough away, from τ = ζ - z (p, 3) at the nodes."""
+    shapes, weighted = _shapes(order)
+    at = tau @ shapes
+    inverse = 1 / at
+    return GradientIntegrals(inverse @ weighted, (at * (inverse * inverse).conj()) @ weighted)
+
+
+@cache
+def _shapes(order: int) -> tuple[ComplexArray, ComplexArray]:
+    """Shape functions (3, order) at the Gauss points, and (order, 3) times the weights; complex as their factors."""
     xi, weights = gauss_legendre(order)
     shapes = reference_element.values(xi)
-    at = tau @ shapes.T
-    inverse = 1 / at
-    weighted = shapes * weights[:, None]
-    return GradientIntegrals(inverse @ weighted, (at * (inverse * inverse).conj()) @ weighted)
+    return shapes.T.astype(complex), (shapes * weights[:, None]).astype(complex)
 
 
 def near_integrals(tau: ComplexArray, root: Root) -> GradientIntegrals:

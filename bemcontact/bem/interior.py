@@ -104,18 +104,19 @@ class Interior:
         root = kernels.nearest_root(tau)
         tiers = reference_element.tier(rho, RHO_OF_T)
         tiers[near] = reference_element.tier(reference_element.bernstein_parameter(root.r), RHO_OF_T)
-        J, K = np.empty((2, *rho.shape, 3), complex)
-        for tier in np.unique(tiers):
+        nodes, at_z, flat = self.influence.element_nodes, np.repeat(z, rho.shape[1]), tiers.ravel()
+        J, K = np.empty((2, rho.size, 3), complex)
+        for tier in np.unique(flat):
             if tier < len(RHO_OF_T):
-                at = np.nonzero(tiers == tier)
-                some = self.influence.element_nodes[at[1]] - z[at[0], None]
+                at = np.flatnonzero(flat == tier)
+                some = nodes[at % rho.shape[1]] - at_z[at, None]
                 J[at], K[at] = gradient_kernels.far_integrals(some, int(reference_element.ORDERS[tier]))
             else:
                 own = tiers[near] == tier
+                at = near[0][own] * rho.shape[1] + near[1][own]
                 part = kernels.Root(root.r[own], root.minus[own], root.plus[own])
-                J[near[0][own], near[1][own]], K[near[0][own], near[1][own]] = gradient_kernels.near_integrals(
-                    tau[own], part
-                )
+                J[at], K[at] = gradient_kernels.near_integrals(tau[own], part)
+        J, K = J.reshape(*rho.shape, 3), K.reshape(*rho.shape, 3)
         return GradientIntegrals(J, K)
 
     def gradient(self, z: ComplexArray, fields: BoundaryFields) -> Gradient:

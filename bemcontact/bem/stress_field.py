@@ -143,11 +143,13 @@ class StressField:
         inside, on = np.flatnonzero(at.inside), np.flatnonzero(~at.inside & ~at.outside)
         gradient = self.interior.gradient(self.interior.z(at.points[inside]), self.fields)
         result[:, inside] = gradient.stress(self.material) + self._volume_stress(at.points[inside])
-        result[:, on] = self.stress_on(at.element[on], at.xi[on], at.points[on])
+        if len(on):
+            result[:, on] = self.stress_on(at.element[on], at.xi[on], at.points[on])
         end = on[at.node[on] >= 0]
-        sides = ((at.node[end], -1.0), (self.mesh.before[at.node[end]], 1.0))
-        both = [self.stress_on(element, np.full(len(end), xi), at.points[end]) for element, xi in sides]
-        result[:, end] = (both[0] + both[1]) / 2
+        if len(end):
+            sides = ((at.node[end], -1.0), (self.mesh.before[at.node[end]], 1.0))
+            both = [self.stress_on(element, np.full(len(end), xi), at.points[end]) for element, xi in sides]
+            result[:, end] = (both[0] + both[1]) / 2
         return result
 
     def stress_on(self, element: IntArray, xi: Array, points: Array) -> Array:
@@ -159,6 +161,8 @@ class StressField:
         for line in self.interior.used_lines:
             corner = ((xi <= -1) & ~self.smooth[element]) | ((xi >= 1) & ~self.smooth[self.mesh.elements[element, 2]])
             own = np.flatnonzero(line.elements[element] & ~corner)
+            if not len(own):
+                continue
             beside = points[own].copy()
             beside[:, line.axis] = line.place - line.outward * ON_BOUNDARY * self.mesh.size
             inside = self.interior.gradient(self.interior.z(beside), self.fields)

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import model_validator
 
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
-from bemcontact.problem.curves import CircularArc, Curve, Edge, EllipticArc
+from bemcontact.problem.curves import CircularArc, Curve, Edge, EllipticArc, Pair
 from bemcontact.problem.geometry import AnyEdge, Arc, Grading, LoopSpec, Place
 from bemcontact.problem.loop_closure import JOINT_TOLERANCE, gap_issues, other_way_round
 from bemcontact.problem.loops import loop_issues
@@ -132,13 +132,24 @@ class Boundary(SpecModel):
     @cached_property
     def size(self) -> float:
         """Diameter of the bounding box [L]."""
-        return size_of_edges(self.edges)
+        return float(np.hypot(*np.ptp(self.box, axis=0)))
+
+    @cached_property
+    def box(self) -> tuple[Pair, Pair]:
+        """Least and largest coordinates [L]."""
+        return _box(self.edges)
 
 
 def size_of_edges(edges: Iterable[Edge]) -> float:
     """Diameter of the bounding box of edges [L]."""
+    return float(np.hypot(*np.ptp(_box(edges), axis=0)))
+
+
+def _box(edges: Iterable[Edge]) -> tuple[Pair, Pair]:
+    """Least and largest coordinates of edges [L]; no array, so that boundaries can be compared."""
     points = np.vstack([edge.polyline() for edge in edges])
-    return float(np.hypot(*np.ptp(points, axis=0)))
+    (left, low), (right, high) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    return (left, low), (right, high)
 
 
 def _with_ends(edge: AnyEdge, ends: Sequence[float] | None) -> AnyEdge:

@@ -1,6 +1,8 @@
 """Which parts of the edges of two elastic bodies are opposite to each other."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +31,10 @@ SAME = 1e-12
 """Difference of two fractions of an edge that is round-off."""
 
 
+KEPT = 64
+"""Pairs of sides whose parts are kept."""
+
+
 class OppositePart(NamedTuple):
     """A part of an edge of the first body that forms pairs with one edge of the second body.
 
@@ -51,8 +57,31 @@ def opposite_parts(edges: Sequence[Edge], surface: BodySurface, reach: float = n
     A place is opposite to the surface if it is turned to it and forms a pair with a place there. That of a rigid
     surface may be a corner both sides of which the place is turned to.
     """
-    most = _largest_gap(edges, surface, reach)
-    return [part for edge in edges for part in _parts_of(edge, surface, most)]
+    return list(_found_once(_TwoSides(_shape(edges, surface), edges, surface), reach))
+
+
+@dataclass(frozen=True)
+class _TwoSides:
+    """Edges and a surface, equal to others of the same shape: a problem with another load has the same parts."""
+
+    shape: tuple[object, ...]
+    edges: Sequence[Edge] = field(compare=False)
+    surface: BodySurface = field(compare=False)
+
+
+def _shape(edges: Sequence[Edge], surface: BodySurface) -> tuple[object, ...]:
+    """All that opposite parts depend on, but for the reach."""
+    others = (surface.edges, surface.first, *surface.loops, *surface.first_loops)
+    own = tuple((edge.name, edge.curve, edge.start, edge.end) for edge in edges)
+    shapes = (tuple((edge.curve, edge.start, edge.end) for edge in some) for some in others)
+    return own, surface.elastic, surface.share, surface.approach, *shapes
+
+
+@lru_cache(maxsize=KEPT)
+def _found_once(sides: _TwoSides, reach: float) -> tuple[OppositePart, ...]:
+    """Look for the parts as of `opposite_parts`."""
+    most = _largest_gap(sides.edges, sides.surface, reach)
+    return tuple(part for edge in sides.edges for part in _parts_of(edge, sides.surface, most))
 
 
 def _largest_gap(edges: Sequence[Edge], surface: BodySurface, reach: float) -> float:
@@ -125,4 +154,6 @@ def _last(
         other = (onto != number[:, None]) | (abs(fraction - there[:, None]) > HALF)
         first = np.where(other.any(axis=1), other.argmax(axis=1), SECTIONS - 1)
         start, stop = places[rows, first], places[rows, first + 1]
+        if (np.nextafter(start, stop) == stop).all():
+            break
     return np.where(start <= SAME, 0.0, np.where(start >= 1 - SAME, 1.0, start))

@@ -21,7 +21,7 @@ from bemcontact.problem.bodies import (
     with_boundary,
 )
 from bemcontact.problem.body_surface import BodySurface, BodyZone
-from bemcontact.problem.boundary import Boundary, size_of_edges
+from bemcontact.problem.boundary import Boundary
 from bemcontact.problem.conditions import Condition, Loads
 from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import CircularArc, Edge
@@ -156,7 +156,8 @@ class StatedBodies(SpecModel):
     @property
     def size(self) -> float:
         """Diameter of the bounding box of the elastic bodies [L]."""
-        return size_of_edges(self.edges) if self.boundary is None else self.boundary.size
+        boxes = np.vstack([part.boundary.box for part in self.parts])
+        return float(np.hypot(*np.ptp(boxes, axis=0)))
 
     @property
     def volume_loads(self) -> list[tuple[Loads, ...]]:
@@ -306,7 +307,7 @@ class StatedBodies(SpecModel):
         if SEPARATOR in (first if self.is_elastic(_body_in(first)) else second)[0]:
             return np.inf
         originals = (self.bodies[body].copy_of or body for body in self.sides_of(contact))  # a box depends on the turn
-        return REACH * min(size_of_edges(self.boundary_of(body).edges) for body in originals)
+        return REACH * min(self.boundary_of(body).size for body in originals)
 
     def opposite(self, contact: str) -> tuple[OppositePart, ...]:
         """Parts of the edges of the first body that are opposite to the second one of a contact, or of a bond."""

@@ -6,7 +6,7 @@ from itertools import pairwise, product
 import mpmath as mp
 import numpy as np
 import pytest
-from mpmath.calculus.quadrature import GaussLegendre
+from multiple_precision import DIGITS, rule_of_24
 
 from bemcontact.bem import kernels, reference_element
 
@@ -27,18 +27,12 @@ def at(nodes: np.ndarray, xi: float) -> tuple[complex, complex]:
     return complex(c0 + xi * (c1 + xi * c2)), complex(c1 + 2 * xi * c2)
 
 
-@cache
-def rule_of_24() -> list[tuple[mp.mpf, mp.mpf]]:
-    with mp.workdps(25):
-        return GaussLegendre(mp.mp).calc_nodes(4, mp.mp.prec)
-
-
 def reference(nodes: np.ndarray, z: complex, foot: float, distance: float) -> np.ndarray:
     """A, B, L, M (4, 3) by Gauss-Legendre rules of 24 points, on intervals that shrink fourfold towards the foot.
 
     The last one is no longer than the distance of the pole in ξ: ρ >= 4 on its Bernstein ellipse, 4^-48 < 1e-28.
     """
-    with mp.workdps(25):
+    with mp.workdps(DIGITS):
         rule = rule_of_24()
         center = min(max(mp.mpf(foot), -1), 1)
         steps = [mp.mpf(2) / 4**k for k in range(19) if k == 0 or 8 / 4**k > distance] + [mp.mpf(0)]

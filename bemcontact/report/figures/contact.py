@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from scipy.spatial import KDTree
 
@@ -22,6 +21,7 @@ from bemcontact.report.figures.page import (
     CUT,
     GREY,
     VERMILION,
+    add_path,
     frame_plan,
     pieces_of,
     plain,
@@ -229,11 +229,11 @@ def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
     """Draw the deformed body, and its undeformed outline where the two differ visibly; return loops (j, 2)."""
     before, after = _curves(state)
     outline = outline_of(state, after)
-    axes.add_patch(PathPatch(outline, facecolor=BODY, edgecolor="none", zorder=0))
-    axes.add_patch(PathPatch(outline, facecolor="none", edgecolor=BLACK, linewidth=1.8, zorder=3))
+    add_path(axes, outline, facecolor=BODY, edgecolor="none", zorder=0)
+    add_path(axes, outline, facecolor="none", edgecolor=BLACK, linewidth=1.8, zorder=3)
     if float(np.abs(after - before).max()) > VISIBLE * float(np.ptp(after.reshape(-1, 2), axis=0).max()):
         undeformed = outline_of(state, before)
-        axes.add_patch(PathPatch(undeformed, facecolor="none", edgecolor=GREY, linewidth=0.9, linestyle="dashed"))
+        add_path(axes, undeformed, facecolor="none", edgecolor=GREY, linewidth=0.9, linestyle="dashed")
     return [loop.reshape(-1, 2) for loop in loops_of(state, after)]
 
 

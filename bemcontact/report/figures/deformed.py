@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.patches import PathPatch
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
@@ -13,7 +12,7 @@ from bemcontact.bem.mesh import BoundaryState, element_curves
 from bemcontact.options import StressMeasure
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.contact import OVERHANG, body_extent, outline_of
-from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, frame_plan, plain
+from bemcontact.report.figures.page import BLACK, BODY, GREY, VERMILION, add_path, frame_plan, plain
 from bemcontact.report.figures.stress import fill_with_stress
 from bemcontact.report.figures.surfaces import reach_through, surfaces_of
 from bemcontact.report.figures.symbols import draw_ground, joined
@@ -62,9 +61,9 @@ def draw_shape(axes: Axes, result: Result, factor: float) -> BoundaryState:
     before = element_curves(state.points, 9)
     after = element_curves(state.points + factor * state.displacement, 9)
     shape, dashed = outline_of(state, after), outline_of(state, before)
-    axes.add_patch(PathPatch(shape, facecolor=BODY, edgecolor="none", zorder=0))
-    axes.add_patch(PathPatch(dashed, facecolor="none", edgecolor=GREY, linewidth=0.9, linestyle="dashed", zorder=2))
-    axes.add_patch(PathPatch(shape, facecolor="none", edgecolor=BLACK, linewidth=1.8, zorder=3))
+    add_path(axes, shape, facecolor=BODY, edgecolor="none", zorder=0)
+    add_path(axes, dashed, facecolor="none", edgecolor=GREY, linewidth=0.9, linestyle="dashed", zorder=2)
+    add_path(axes, shape, facecolor="none", edgecolor=BLACK, linewidth=1.8, zorder=3)
     _draw_touching(axes, result, state, after)
     covered = [before.reshape(-1, 2), after.reshape(-1, 2)]
     size = float(np.hypot(*body_extent(state)))

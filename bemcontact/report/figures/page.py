@@ -14,6 +14,8 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path as MplPath
 from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator, ScalarFormatter
 
@@ -114,6 +116,12 @@ def labeled(quantity: str, unit: str) -> str:
 def round_ticks(most: int) -> MaxNLocator:
     """Place at most so many intervals between ticks, with long labels in mind, at round numbers."""
     return MaxNLocator(most, steps=[1, 2, 2.5, 5, 10])
+
+
+def add_path(axes: Axes, path: MplPath, **style: Any) -> None:
+    """Draw a path; `Axes.add_patch` would look for the limits of each of its thousands of strokes."""
+    axes.add_artist(PathPatch(path, **style))
+    axes.update_datalim(path.vertices)
 
 
 def frame_plan(axes: Axes, drawn: Array, unit: str) -> None:

@@ -8,7 +8,6 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
 from bemcontact.analysis.check import contours
@@ -35,6 +34,7 @@ from bemcontact.report.figures.page import (
     GREY,
     PURPLE,
     VERMILION,
+    add_path,
     frame_plan,
     new_page,
     short_label,
@@ -146,7 +146,7 @@ def _total(parts: list[Array], none: Array) -> Array:
 def _fill_body(axes: Axes, problem: Problem) -> None:
     """Fill the body; holes run the other way round and so stay empty."""
     path = Path.make_compound_path(*(Path(loop, closed=True) for loop in _polygons(problem)))
-    axes.add_patch(PathPatch(path, facecolor=BODY, edgecolor="none", zorder=0))
+    add_path(axes, path, facecolor=BODY, edgecolor="none", zorder=0)
 
 
 def _polygons(problem: Problem) -> list[Array]:

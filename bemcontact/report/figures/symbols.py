@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.patches import PathPatch, Polygon
+from matplotlib.patches import Polygon
 from matplotlib.path import Path
 from matplotlib.transforms import Bbox
 
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.report.figures.page import without_glyph_warnings
+from bemcontact.report.figures.page import add_path, without_glyph_warnings
 
 SYMBOL_REACH = 18.0
 """Half the length of a symbolic arrow, in pixels of the page."""
@@ -88,8 +88,7 @@ def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, color: 
     inward = -np.column_stack([np.interp(at, s, normals[:, i]) for i in (0, 1)])
     tips = roots + 0.7 * depth * (inward + inward[:, ::-1] * (1, -1))
     strokes = Path(np.stack([roots, tips], axis=1).reshape(-1, 2), len(roots) * [Path.MOVETO, Path.LINETO])
-    axes.add_artist(PathPatch(strokes, facecolor="none", edgecolor=color, linewidth=0.7, zorder=1))
-    axes.update_datalim(strokes.vertices)  # as add_patch would, which takes long for thousands of strokes
+    add_path(axes, strokes, facecolor="none", edgecolor=color, linewidth=0.7, zorder=1)
     axes.plot(*points.T, color=color, linewidth=1.3, zorder=1)
     return np.concatenate([roots, tips])
 
