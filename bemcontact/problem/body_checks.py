@@ -7,7 +7,6 @@ import numpy as np
 from bemcontact.errors import Issue, KeyPath
 from bemcontact.problem.bodies import SEPARATOR, BodySpec, qualified
 from bemcontact.problem.body_surface import BodySurface
-from bemcontact.problem.boundary import size_of_edges
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.contact_zone import ContactZone, RigidTool
 from bemcontact.problem.reference import Crack, FlatPunch, ProppedBeam, Reference, ShrinkFit
@@ -21,9 +20,6 @@ COINCIDE = 1e-6
 SAMPLES = 33
 """Places of an edge where the distance is measured."""
 
-INSIDE = 1e-6
-"""Depth over the size of a body from which a place is drawn inside it."""
-
 
 def body_issues(problem: StatedBodies) -> Iterator[Issue]:
     """Issues of the bodies themselves: what belongs to each of them, copies, materials, conditions."""
@@ -34,7 +30,10 @@ def body_issues(problem: StatedBodies) -> Iterator[Issue]:
         ("loads", problem.loads != Loads()),
     ):
         if given:
-            yield KeyIssue(path=(key,), message=f"with several bodies {key} belongs to each of them: bodies.NAME.{key}")
+            belong = "belong" if key.endswith("s") else "belongs"
+            yield KeyIssue(
+                path=(key,), message=f"with several bodies {key} {belong} to each of them: bodies.NAME.{key}"
+            )
     for name, body in problem.bodies.items():
         yield from _copy_issues(problem, name, body)
         if isinstance(body.material, str) and body.material not in problem.materials:
@@ -200,7 +199,8 @@ def _side_issues(problem: StatedBodies, side: Sequence[str], path: KeyPath, numb
                 path=here, message=f"'{entry}' is a whole body; leave the edges of this side out, or name its edges"
             )
         elif separator and edge in problem.bodies[body].conditions:
-            message = f"edge '{entry}' has a condition and cannot touch; remove one of the two"
+            what = "be bonded" if path[0] == "bonded" else "touch"
+            message = f"edge '{entry}' has a condition and cannot {what}; remove one of the two"
             yield Issue(path=here, message=message)
 
 
@@ -272,11 +272,13 @@ def opposite_issues(problem: StatedBodies) -> Iterator[Issue]:
                 sides = " and ".join(", ".join(side) for side in contact.between)
                 message = f"{sides} are nowhere opposite to each other; look at their places and normals"
                 yield Issue(path=path, message=message)
+            again = False
             for pair in {frozenset((part.edge, surface.edges[part.onto].name)) for part in parts}:
                 if (other := pairs.setdefault(pair, name)) != name:
+                    again = True
                     message = f"contact of {' and '.join(sorted(pair))} is stated by '{other}' already; remove one"
                     yield Issue(path=path, message=message)
-            if not surface.elastic:
+            if again or not surface.elastic:
                 continue
             for part in parts:
                 follows.setdefault(surface.edges[part.onto].name, set()).add(part.edge)
@@ -307,26 +309,6 @@ def closed_form_issues(problem: StatedBodies, references: Mapping[str, Reference
                 "uniform, values or table, or the zone of a rigid surface"
             )
             yield Issue(path=("reference", name, "kind"), message=message)
-
-
-def inside_issues(problem: StatedBodies) -> Iterator[Issue]:
-    """Issues of bodies that are drawn wholly inside others which they do not touch: their edges cross nowhere."""
-    stated = {frozenset(problem.sides_of(contact)) for contact in (*problem.contacts, *problem.bonded)}
-    loops = {name: problem.boundary_of(name).loops for name in problem.bodies}
-    middles = {
-        name: np.array([edge.points(np.array([0.5]))[0] for loop in its for edge in loop])
-        for name, its in loops.items()
-    }
-    for name, outer in loops.items():
-        edges = tuple(edge for loop in outer for edge in loop)
-        surface = BodySurface(body=name, elastic=False, edges=edges, loops=outer)
-        low, high = middles[name].min(axis=0), middles[name].max(axis=0)
-        for other, points in middles.items():
-            if other == name or frozenset((name, other)) in stated or (points < low).any() or (points > high).any():
-                continue
-            if (surface.feet(points).gap < -INSIDE * size_of_edges(edges)).all():
-                message = f"'{other}' is drawn inside '{name}', and no contact between them is stated; move one of them"
-                yield Issue(path=("bodies", other), message=message)
 
 
 def _circle(follows: dict[str, set[str]]) -> list[str]:
