@@ -52,8 +52,8 @@ UP, TURN, SIDE = "translation along (0, 1)", "rotation counterclockwise about", 
             (
                 SIDE,
                 f"{UP} of the body, the tool 'press' and the tool 'table' together",
-                f"{TURN} (1, 0.5) and {TURN} (1, 1) and {TURN} (1, 0) of the body, the tool 'press' and the tool "
-                "'table' together",
+                f"{TURN} (1, 0.5) of the body, together with the {TURN} (1, 1) of the tool 'press', together with the "
+                f"{TURN} (1, 0) of the tool 'table'",
             ),
         ),
         (
