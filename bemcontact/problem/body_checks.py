@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from bemcontact.errors import Issue, KeyPath
-from bemcontact.problem.bodies import SEPARATOR, BodySpec, qualified
+from bemcontact.problem.bodies import SEPARATOR, BodySpec, qualified, unknown_edge
 from bemcontact.problem.body_surface import BodySurface
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.contact_zone import ContactZone, RigidTool
@@ -104,7 +104,7 @@ def contact_issues(problem: StatedBodies, tools: Mapping[str, RigidTool]) -> Ite
         yield from _contour_issues(problem, name, zone, edges)
         for i, edge in enumerate(zone.edges or ()):
             if edge not in edges:
-                yield Issue(path=("contact_zones", name, "edges", i), message=unknown_word("edge", edge, edges))
+                yield Issue(path=("contact_zones", name, "edges", i), message=unknown_edge(edge, edges))
             elif edge in problem.edge_conditions:
                 message = f"edge '{edge}' has a condition and cannot touch; remove one of the two"
                 yield Issue(path=("contact_zones", name, "edges", i), message=message)
@@ -138,7 +138,7 @@ def _contour_issues(problem: StatedBodies, name: str, zone: ContactZone, edges: 
             yield Issue(path=(*path, "surface"), message=message)
     for edge in surface.conditions:
         if edge not in edges:
-            message = unknown_word("edge", edge, edges)
+            message = unknown_edge(edge, edges)
         elif edge.partition(SEPARATOR)[0] != body:
             message = f"'{edge}' is not an edge of '{body}', whose contour this is; remove its condition"
         else:
@@ -189,9 +189,13 @@ def _side_issues(problem: StatedBodies, side: Sequence[str], path: KeyPath, numb
         here = (*path, number) if len(side) == 1 else (*path, number, i)
         body, separator, edge = entry.partition(SEPARATOR)
         if body not in problem.bodies:
-            yield Issue(path=here, message=unknown_word("body", body, problem.bodies))
+            spaced = not separator and [name for name in problem.bodies if entry.startswith(f"{name} ")]
+            message = unknown_word("body", body, problem.bodies)
+            if spaced and (its := entry.removeprefix(spaced[0]).strip()) in _own_edges(problem, spaced[0]):
+                message = f"an edge of a body is BODY/EDGE: write '{qualified(spaced[0], its)}' for '{entry}'"
+            yield Issue(path=here, message=message)
             return
-        own = [item.name for item in problem.boundary_of(body).edges]
+        own = _own_edges(problem, body)
         if separator and edge not in own:
             yield Issue(path=here, message=unknown_word("edge", entry, [qualified(body, name) for name in own]))
         elif not separator and len(side) > 1:
@@ -202,6 +206,11 @@ def _side_issues(problem: StatedBodies, side: Sequence[str], path: KeyPath, numb
             what = "be bonded" if path[0] == "bonded" else "touch"
             message = f"edge '{entry}' has a condition and cannot {what}; remove one of the two"
             yield Issue(path=here, message=message)
+
+
+def _own_edges(problem: StatedBodies, body: str) -> list[str]:
+    """Names that the edges of a body have in it."""
+    return [edge.name for edge in problem.boundary_of(body).edges]
 
 
 def _pair_issues(problem: StatedBodies, between: tuple[Sequence[str], Sequence[str]], path: KeyPath) -> Iterator[Issue]:
@@ -228,7 +237,7 @@ def _case_issues(problem: StatedBodies, edges: Sequence[str]) -> Iterator[Issue]
                 yield KeyIssue(path=("load_cases", name, "bodies", body), message=message)
         for edge in case.conditions:
             if edge not in edges:
-                message = unknown_word("edge", edge, edges)
+                message = unknown_edge(edge, edges)
                 yield KeyIssue(path=("load_cases", name, "conditions", edge), message=message)
 
 

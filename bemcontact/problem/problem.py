@@ -107,6 +107,9 @@ class Problem(StatedBodies):
         json_schema_extra={"anyOf": [{"required": [*OF_ONE_BODY]}, {"required": ["bodies"]}]},
     )
     root: ClassVar[bool] = True
+    other_words: ClassVar[Mapping[str, str]] = {
+        "body": "bodies has several bodies by name; an only one has material and boundary at the top level"
+    }
 
     tools: dict[Name, RigidTool] = Field(default_factory=dict)
     """The tools by name: rigid surfaces that are displaced, or loaded and free to move; others are fixed."""
@@ -155,6 +158,8 @@ class Problem(StatedBodies):
     @classmethod
     def _missing_parts(cls, raw: RawValue) -> Iterator[Issue]:
         """Issues of a problem of one body without one of its parts."""
+        if isinstance(raw.value, Mapping) and "body" in raw.value:
+            return
         bodies, zones = raw.below(cls, "bodies"), raw.below(cls, "contact_zones")
         if bodies.value is not None and bodies.value != {}:
             return
