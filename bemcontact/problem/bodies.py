@@ -132,10 +132,13 @@ class BodyContact(SpecModel):
     """Contact of two bodies without friction."""
 
     example: ClassVar[str] = "{between: [roller/under, rail/top]}"
-    other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("clearance", "play", "interference", "overlap", "offset", "distance"),
-        "gap is the clearance that is added to the gap as drawn; a negative one is an interference",
-    ) | dict.fromkeys(("friction", "friction_coefficient", "mu"), "contact is without friction; leave it out")
+    other_words: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("clearance", "play", "interference", "overlap", "offset", "distance"),
+            "gap is the clearance that is added to the gap as drawn; a negative one is an interference",
+        ),
+        **dict.fromkeys(("friction", "friction_coefficient", "mu"), "contact is without friction; leave it out"),
+    }
 
     between: Sides
     """The two sides: a body, or an edge as BODY/EDGE, or a list of edges of one body. Contact points are nodes of the

@@ -107,8 +107,8 @@ def test_the_depth_is_that_of_the_deepest_place(turn):
     """A bar of width 2 h across an edge of another body is h deep in it at the middle."""
     h, c, s = 1e-2, math.cos(math.radians(turn)), math.sin(math.radians(turn))
     corners = np.array([[-3, -h], [3, -h], [3, h], [-3, h]]) @ [[c, s], [-s, c]]
-    bar = drawn_body("bar", Boundary(**polygon(**dict(zip("abcd", corners.tolist(), strict=True)))))
-    disk = drawn_body("disk", Boundary(**{"outer": [circle("rim", 1)]}))
+    bar = drawn_body("bar", Boundary.model_validate(polygon(**dict(zip("abcd", corners.tolist(), strict=True)))))
+    disk = drawn_body("disk", Boundary.model_validate({"outer": [circle("rim", 1)]}))
     assert depth_in(disk, bar, 1e-6).most == pytest.approx(h, rel=0.2)
     assert depth_in(bar, disk, 1e-6).most == pytest.approx(1, abs=1.1 * h)
     assert depth_in(disk, bar, 1e-6).least < -0.9
