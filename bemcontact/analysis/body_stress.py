@@ -169,8 +169,8 @@ class EdgePeak(NamedTuple):
     arc: float
 
 
-def ensure_in_body(field: StressField, at: Located) -> None:
-    """Refuse points outside of the body with a `ProblemError`."""
+def ensure_in_body(field: StressField, at: Located, bodies: int = 1) -> None:
+    """Refuse points outside of the body with a `ProblemError`; of several `bodies` it is that nearest to the first."""
     if not at.outside.any():
         return
     first, count = int(np.argmax(at.outside)), int(at.outside.sum())
@@ -178,9 +178,13 @@ def ensure_in_body(field: StressField, at: Located) -> None:
     edge = field.mesh.edge_names[field.mesh.edge[at.element[first]]]
     near = f", {at.distance[first]:.3g} {unit}".rstrip() + f" from '{edge}'" if np.isfinite(at.distance[first]) else ""
     others = f"; {count} of the {len(at.points)} points are" if count > 1 else ""
+    named = f" '{body}'" if (body := field.problem.part_of(edge)) else ""
+    where, inside = f"outside the undeformed body{named}", f"inside the body{named} or on its boundary"
+    if bodies > 1:
+        where, inside = "in none of the undeformed bodies", "inside a body or on its boundary"
     raise ProblemError(
-        f"points[{first}] = ({x:.6g}, {y:.6g}) is outside the undeformed body{near}{others}; give points inside the "
-        "body or on its boundary, in coordinates before the deformation"
+        f"points[{first}] = ({x:.6g}, {y:.6g}) is {where}{near}{others}; give points {inside}, in coordinates before "
+        "the deformation"
     )
 
 

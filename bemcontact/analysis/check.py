@@ -1,6 +1,6 @@
 """A problem before it is solved: its mesh, its loads, and what holds the body."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,10 +12,14 @@ from bemcontact.bem.body import Body, body_of, deflections, each_case, ensure_he
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.problem import DeflectedContour, Problem
+from bemcontact.problem.boundary import size_of_edges
 from bemcontact.problem.nearest_places import nearest_places, surface_corners
 
 BULGE = 1e-5
 """Bulge of a spline over the size of the body that is noted: displacements of stiff bodies are not much larger."""
+
+INTERFERENCE = 0.01
+"""Overlap of two bodies over the size of the smaller one that is noted: a strain that is hardly small."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,17 +52,40 @@ def check(problem: Problem) -> CheckedProblem:
     for acting in each_case(body):
         ensure_held(acting)
     x, y = body.acting.true_force
+    smallest = {name: _smallest_gap(body, i) for i, name in enumerate(body.problem.zones)}
     return CheckedProblem(
         problem=body.problem,
         mesh=body.mesh,
         gaps={name: body.points.gap[body.points.zone == i] for i, name in enumerate(body.problem.zones)},
-        smallest_gaps={name: _smallest_gap(body, i) for i, name in enumerate(body.problem.zones)},
+        smallest_gaps=smallest,
         free_motions=sum(map(len, body.motions)),
         held_by_contact=tuple(body.seen.describe()),
         total_load=(float(x), float(y)),
         load_magnitude=float(body.pinned.total(body.factors, body.forces)),
-        notes=(*body.notes, *_idle(body), *bulging(body, BULGE * body.problem.size)),
+        notes=(
+            *body.notes,
+            *_interference(body.problem, smallest),
+            *_idle(body),
+            *bulging(body, BULGE * body.problem.size),
+        ),
     )
+
+
+def _interference(problem: Problem, smallest_gaps: Mapping[str, float]) -> Iterator[str]:
+    """Note contacts of bodies that are drawn far into each other."""
+    for name, contact in problem.contacts.items():
+        depth, both = -smallest_gaps[name], problem.sides_of(name)
+        sizes = {body: size_of_edges(problem.boundary_of(body).edges) for body in both}
+        smaller = min(both, key=sizes.__getitem__)
+        if depth < INTERFERENCE * sizes[smaller]:
+            continue
+        how = f"with gap: {contact.gap:g}" if contact.gap else "as they are drawn"
+        yield (
+            f"'{both[0]}' and '{both[1]}' overlap by {depth:.3g} {problem.units.length}".rstrip()
+            + f" in '{name}' {how}, {100 * depth / sizes[smaller]:.2g} % of the size of '{smaller}': this is an "
+            "interference, which presses them apart, and far more than of a usual fit; if none is meant, move one of "
+            "them" + ", or correct gap" * bool(contact.gap)
+        )
 
 
 def _idle(body: Body) -> Iterator[str]:

@@ -13,6 +13,8 @@ from bemcontact.bem.mesh import CORNER
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.problem.problem import Problem
+from bemcontact.problem.stated_bodies import REACH
 from bemcontact.problem.surface_lines import Polyline, Spline
 
 FEW_POINTS = 5
@@ -200,12 +202,33 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
         x, y = mesh.nodes[node]
         reached = f"contact reaches the end of the zone '{_zone(body, i)}' at ({x:.5g}, {y:.5g})"
         if abs(angles[node] - np.pi) < CORNER:
+            zone = _zone(body, i)
+            if np.isfinite(body.problem.reach_of(zone)):
+                yield f"{reached}, where the boundary goes on smoothly; {longer(body.problem, zone)}"
+                continue
             yield (
-                f"{reached}, where the boundary goes on smoothly; make the zone longer, unless the surface ends "
-                f"there with an edge: then {UNBOUNDED}"
+                f"{reached}, where the boundary goes on smoothly; {longer(body.problem, zone)}, unless the surface "
+                f"ends there with an edge: then {UNBOUNDED}"
             )
         elif free[node] and angles[node] > np.pi / 2 + CORNER:
             yield f"{reached}, a corner of the body of {np.degrees(angles[node]):.0f} degrees; {UNBOUNDED}"
+
+
+def longer(problem: Problem, zone: str) -> str:
+    """Say how more of a boundary may touch in a zone."""
+    if zone not in problem.contacts:
+        return "make the zone longer"
+    if not np.isfinite(problem.reach_of(zone)):
+        return "add to between the edges that follow there on either body"
+    first, second = problem.contacts[zone].between
+    edges = [*first, *second], [*problem.edges_of(zone), *problem.opposite_edges(zone)]
+    named = ", ".join(name for name in dict.fromkeys(edges[1]) if name not in edges[0])
+    return (
+        f"reduce the load, or name edges in between, such as {named}: whole bodies may touch where gaps as drawn are "
+        f"up to {problem.reach_of(zone):.3g} {problem.units.length}".rstrip()
+        + " larger than at the nearest place, "
+        f"{100 * REACH:.2g} % of the size of the smaller one"
+    )
 
 
 def long_neighbors(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 
 import numpy as np
 
+from bemcontact.analysis.diagnostics import longer
 from bemcontact.analysis.linear_theory import Noticed, linear_theory
 from bemcontact.analysis.path_states import FollowedPath
 from bemcontact.analysis.placement import part_of_path, placement
@@ -23,6 +24,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
 from bemcontact.problem.loops import first_meeting, signed_area
+from bemcontact.problem.problem import Problem
 
 DETAIL = 1e-4
 """Length over the size of the body of parts of its boundary that may fold: the tip of a notch."""
@@ -138,15 +140,18 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
                 f"between: [{of[0]}, {of[1]}]."
             ),
         )  # fmt: skip
+    who, state = "The body", "Give the body a name under bodies, and state"
+    if of[0]:
+        who, state = f"The body '{of[0]}'", "State"
     crossing = " and ".join(f"'{edge}'" for edge in edges) if len(set(edges)) > 1 else f"two parts of '{edges[0]}'"
     return Penetration(
         kind=Misfit.ITSELF, depth=float(np.hypot(*(first - second))), allowed=0.0, at=(x, y), edge=edges[0], zone="",
         paired=False,
         words=(
-            f"The body penetrates itself at ({x:.5g}, {y:.5g}), where {crossing} cross after the motion. No contact "
-            "between them is stated: parts that should press on each other pass through. Give the body a name under "
-            "bodies, and state contact between two of its edges; or reduce the load to that at which they meet; or "
-            "take half of the body, with a rigid plane in the middle of the slot, if it is symmetric."
+            f"{who} penetrates itself at ({x:.5g}, {y:.5g}), where {crossing} cross after the motion. No contact "
+            f"between them is stated: parts that should press on each other pass through. {state} contact between two "
+            "of its edges; or reduce the load to that at which they meet; or take half of the body, with a rigid plane "
+            "in the middle of the slot, if it is symmetric."
         ),
     )  # fmt: skip
 
@@ -246,7 +251,7 @@ def _penetration(gaps: SurfaceGaps, zone: str, element: int, xi: float, depth: f
         edge=edge,
         zone=zone,
         paired=paired,
-        words=penetration_in_words(how_deep, f"({x:.5g}, {y:.5g}) on '{edge}'", zone, paired=paired),
+        words=_in_words(gaps.problem, zone, edge, f"by {how_deep} at ({x:.5g}, {y:.5g}) on '{edge}'", paired=paired),
     )
 
 
@@ -261,8 +266,39 @@ def _of_second(gaps: SurfaceGaps, zone: str, found: Inside, allowed: float) -> P
         edge=found.edge,
         zone=zone,
         paired=False,
-        words=penetration_in_words(how_deep, f"({x:.5g}, {y:.5g}) on '{found.edge}'", zone, paired=False),
+        words=_in_words(
+            gaps.problem, zone, found.edge, f"by {how_deep} at ({x:.5g}, {y:.5g}) on '{found.edge}'", paired=False
+        ),
     )
+
+
+def _in_words(problem: Problem, zone: str, edge: str, where: str, *, paired: bool) -> str:
+    """Say which surface an edge penetrates, why nothing keeps it out, and what to do."""
+    body, own = problem.part_of(edge), problem.edges_of(zone)
+    if zone in problem.contacts:
+        first, second = problem.sides_of(zone)
+        fact = f"'{body}' penetrates '{second if body == first else first}' {where}"
+        if edge in own:
+            how = longer(problem, zone)
+            advice = f"beyond the part of this edge that may touch in '{zone}'. {how[0].upper()}{how[1:]}."
+        else:
+            advice = f"an edge that is not in the contact '{zone}'. Name it in between, with the others of '{body}'."
+        return penetration_in_words(fact, advice, paired=paired)
+    who = f"The body '{body}'" if body else "The body"
+    fact = f"{who} penetrates the surface of '{zone}' {where}"
+    ends = "If the surface ends before that place, state it as"
+    if body and body not in {problem.part_of(name) for name in own}:
+        advice = (
+            f"a body that has no edge in that zone. {ends} a body with rigid: true, which ends where it ends. Else add "
+            "the edge to the zone."
+        )
+    else:
+        advice = (
+            "an edge that is not in that zone. Add the edge to the zone; if it is in another one, divide it, or state "
+            f"both surfaces as one polyline. {ends} a polyline that turns away there"
+            f"{', or as a body with rigid: true' if body else ''}."
+        )
+    return penetration_in_words(fact, advice, paired=paired)
 
 
 def _excused(gaps: SurfaceGaps, zone: str, depth: Array, xi: Array, allowed: float) -> Iterator[str]:
@@ -274,10 +310,15 @@ def _excused(gaps: SurfaceGaps, zone: str, depth: Array, xi: Array, allowed: flo
             gaps.state.edge_names[gaps.state.edge[element]],
             f"{depth[element]:.2g} {gaps.problem.units.length}",
         )
+        problem = gaps.problem
+        beyond, remedy = f"'{edge}' is not in '{zone}'", "if this edge should touch, add it to the zone"
+        if zone in problem.contacts and edge in problem.edges_of(zone):
+            beyond, remedy = f"'{edge}' may touch in '{zone}' on a part of it only", longer(problem, zone)
+        elif problem.several and zone not in problem.contacts:
+            remedy += "; if the surface ends before it, state the surface as a body with rigid: true"
         yield (
-            f"'{edge}' is not in '{zone}', and is inside its surface by {inside.strip()} at ({x:.5g}, {y:.5g}): "
-            "displacements are so large that linear theory may be off by this, so it does not count; if this edge "
-            "should touch, add it to the zone"
+            f"{beyond}, and is inside its surface by {inside.strip()} at ({x:.5g}, {y:.5g}): displacements are so "
+            f"large that linear theory may be off by this, so it does not count; {remedy}"
         )
 
 
@@ -286,9 +327,10 @@ def _behind(gaps: SurfaceGaps, zone: str, behind: BoolArray) -> Iterator[str]:
     edges = sorted({gaps.state.edge_names[i] for i in gaps.state.edge[behind]})
     if edges:
         names = ", ".join(f"'{name}'" for name in edges)
+        remedy = "; state the surface as a body with rigid: true, which ends where it ends" * gaps.problem.several
         yield (
             f"part of {names} lies behind the surface of '{zone}' as stated: the surface is taken to end before "
-            "it, and contact there was not looked at"
+            f"it, and contact there was not looked at{remedy}"
         )
 
 

@@ -198,8 +198,9 @@ class Result(Recorded):
         Parameters
         ----------
         points : (k, 2) places (x, y) in the undeformed body [L]
-        body : name of the body, if there are several; if None, the first one that has a point inside, else on its
-            boundary
+        body : name of the body, if there are several. If None, it is the first one that has the point inside, else the
+            first one that has it on its boundary, in the order of `bodies`. So at a point of a contact it is that of
+            the two that is stated first, and the stress in the other one is another: name the body that is meant
 
         Returns
         -------

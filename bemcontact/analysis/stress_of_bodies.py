@@ -171,7 +171,7 @@ def placed_in(fields: Sequence[StressField], points: object) -> list[Located]:
     nowhere = np.all([at.outside for at in placed], axis=0)
     if nowhere.any():
         nearest = int(np.argmin([at.distance[np.argmax(nowhere)] for at in placed]))
-        ensure_in_body(fields[nearest], placed[nearest]._replace(outside=nowhere))
+        ensure_in_body(fields[nearest], placed[nearest]._replace(outside=nowhere), len(fields))
     return placed
 
 

@@ -28,7 +28,7 @@ def stress_operator(problem: Problem | Result, points: ArrayLike, body: str | No
     ----------
     problem : a Problem, which is condensed as by `bemcontact.condense`, or a Result, whose mesh is taken
     points : (k, 2) places (x, y) in the undeformed bodies [L], none of them where stress may be infinite
-    body : name of the body that has the points, where several touch; the first one that has each point if left out
+    body : name of the body that has the points, where several touch; as of `Result.stress` if left out
 
     Returns
     -------

@@ -79,16 +79,11 @@ def tolerated(contact: CondensedContact, largest: float, size: float) -> float:
     return max(TOLERATED * min(contact.scales.displacement, largest), ROUND_OFF * size)
 
 
-def penetration_in_words(depth: str, place: str, zone: str, *, paired: bool) -> str:
-    """What is wrong, and what to do, from a depth and a place in words."""
-    fact = f"The body penetrates the surface of '{zone}' by {depth} at {place}"
+def penetration_in_words(fact: str, advice: str = "", *, paired: bool) -> str:
+    """What is wrong, and what to do, from what penetrates what by how much and where, and why it may."""
     if paired:
         return (
             f"{fact}, between contact points, on another face of it, or where a condition holds the body. Shorten the "
             "elements there (--refine 2), or correct the condition."
         )
-    return (
-        f"{fact}, an edge that is not in that zone. Add the edge to the zone; if it is in another one, divide it, or "
-        "state both surfaces as one polyline. If the surface ends before that place, state it as a polyline that turns "
-        "away there."
-    )
+    return f"{fact}, {advice}"

@@ -224,7 +224,7 @@ class Body:
             for material in materials
             for doubt in self.problem.units.doubts(material.young_modulus, material.poisson_ratio)
         )
-        return (*_left_out(self.problem), *self._wedges(), *at_zero, *stated)
+        return (*_left_out(self.problem), *_mixed_states(self.problem), *self._wedges(), *at_zero, *stated)
 
     def _wedges(self) -> Iterator[str]:
         """Note contact points that conditions hold nearly along the rigid normal, and that slide into a wedge."""
@@ -259,6 +259,20 @@ def _ensure_before_surfaces(problem: Problem, mesh: Mesh) -> None:
                 f"body: {TURNED[zone.surface.kind]}"
             )
             raise ProblemError(Issue(path=("contact_zones", name, "surface"), message=message))
+
+
+def _mixed_states(problem: Problem) -> Iterator[str]:
+    """Note bodies in plane stress beside others in plane strain."""
+    states: dict[str, list[str]] = {}
+    for part in problem.parts:
+        states.setdefault(part.material.state.replace("_", " "), []).append(f"'{part.name}'")
+    if len(states) > 1:
+        which = ", and ".join(f"{', '.join(names)} in {state}" for state, names in states.items())
+        yield (
+            f"two plane states are mixed: {which}; pressures and forces are per thickness, and all bodies count as "
+            "equally thick, but those in plane stress are free to become thicker or thinner and those in plane strain "
+            "are not; give bodies that are equally thick the same state"
+        )
 
 
 def _left_out(problem: Problem) -> Iterator[str]:
@@ -367,7 +381,8 @@ def _check_support(body: Body) -> None:
 def _pull(body: Body, pull: FreeMotions) -> str:
     """Say in which motion the loads pull the body or a tool off, and what to add against it."""
     who, way, direction = pull.who(0), pull.way(0), pull.direction(0)
-    off = "its support" if who == BODY else "what it touches"
+    many = pull.several(0)
+    off = "its support" if who == BODY else "what they touch" if many else "what it touches"
     load, against = "", "against this motion"
     if direction is not None:
         resultant = (body.motion_load(pull.along(0)) @ body.factors + 0.0).tolist()
@@ -377,7 +392,7 @@ def _pull(body: Body, pull: FreeMotions) -> str:
     return (
         f"the load{load} pulls {who} off {off}: it drives the {way}, which nothing holds; add a load {against} that "
         f"presses {who} on, or turn the load around or move it, or prescribe a displacement that holds "
-        f"{who if who == BODY else 'it'}"
+        f"{who if who == BODY else 'them' if many else 'it'}"
     )
 
 

@@ -23,6 +23,9 @@ FAR = 3.0
 """Distance of a pole from the middle, over half the size of the body, from which points move nearly alike: their
 motions differ by no more than a third from that of the middle."""
 
+MOST_WAYS = 3
+"""Largest number of different ways in which parts move together that are named."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RigidMotions:
@@ -74,8 +77,11 @@ class RigidMotions:
         """Describe each motion: its direction, or the point about which it turns."""
         return tuple(map(self.described, self.coefficients))
 
-    def described(self, coefficients: Array) -> str:
-        """Describe the motion with these coefficients (3,), which are not all zero."""
+    def described(self, coefficients: Array, half: float | None = None) -> str:
+        """Describe the motion with these coefficients (3,), which are not all zero; of a body with half this size [L].
+
+        The size of the body is twice the radius if none is given.
+        """
         a, b, c = np.where(abs(coefficients) > 1e-9 * abs(coefficients).max(), coefficients, 0.0)
         if c == 0:
             length = np.hypot(a, b)
@@ -83,10 +89,10 @@ class RigidMotions:
         pole = self.center + self.radius / c * np.array([-b, a])
         x, y = np.where(abs(pole) > 1e-5 * self.radius, pole, 0.0)  # the middle of the nodes depends on the mesh
         sense = "counterclockwise" if c > 0 else "clockwise"
-        turn, way = f"rotation {sense} about ({x:.4g}, {y:.4g})", np.hypot(a, b)
-        if way <= FAR * abs(c):
-            return turn
-        return f"{turn}, which is far off: nearly a translation along ({a / way:.4g}, {b / way:.4g})"
+        way = np.hypot(a, b)
+        if way <= FAR * abs(c) * (1.0 if half is None else half / self.radius):
+            return f"rotation {sense} about ({x:.4g}, {y:.4g})"
+        return f"translation along ({a / way:.4g}, {b / way:.4g}) with a small {sense} turn"
 
 
 def toward(direction: Array) -> str:
@@ -212,6 +218,7 @@ class FreeMotions:
         its pole
     bodies : how sentences call the bodies
     names : of the tools
+    halves : half of the size of each body [L]; the radius if not given
     centers : (b + t, 2) centers and poles [L]
     to_points : (3 t, 3 t) motion of the tools, x, y and rotation [rad/L] about their own points, from that about poles
     radius : [L]
@@ -223,6 +230,7 @@ class FreeMotions:
     to_points: Array
     radius: float
     bodies: tuple[str, ...] = (BODY,)
+    halves: tuple[float, ...] = ()
 
     def __len__(self) -> int:
         """Return the number of motions."""
@@ -255,20 +263,46 @@ class FreeMotions:
 
     def describe(self) -> tuple[str, ...]:
         """Describe each motion, with what moves unless it is an only body."""
-        return tuple(f"{self.way(j)}{'' if self.who(j) == BODY else f' of {self.who(j)}'}" for j in range(len(self)))
+        return tuple(self._whole(j) for j in range(len(self)))
+
+    def _whole(self, motion: int) -> str:
+        """Describe a motion, with what moves unless it is an only body."""
+        way, who = self.way(motion), self.who(motion)
+        return way if who == BODY or len(self._ways(motion)) > 1 else f"{way} of {who}"
 
     def who(self, motion: int) -> str:
         """Name what moves: the body, tools, or several of them together."""
+        return self._together(self._moving(motion))
+
+    def several(self, motion: int) -> bool:
+        """Whether several of body and tools move."""
+        return len(self._moving(motion)) > 1
+
+    def way(self, motion: int) -> str:
+        """Describe how it moves; if its parts do not move alike, how each of them does."""
+        ways = self._ways(motion)
+        if len(ways) == 1:
+            return next(iter(ways))
+        if len(ways) > MOST_WAYS:
+            (first, parts), *_ = ways.items()
+            return f"joint motion of {self.who(motion)}: that with the {first} of {self._together(parts)}"
+        return ", together with the ".join(f"{way} of {self._together(parts)}" for way, parts in ways.items())
+
+    def _together(self, parts: Sequence[int]) -> str:
+        """Name bodies and tools."""
         *others, last = (
             self.bodies[part] if part < len(self.bodies) else f"the tool '{self.names[part - len(self.bodies)]}'"
-            for part in self._moving(motion)
+            for part in parts
         )
         return f"{', '.join(others)} and {last} together" if others else last
 
-    def way(self, motion: int) -> str:
-        """Describe how it moves."""
-        ways = [self._part(part).described(self._of(motion, part)) for part in self._moving(motion)]
-        return " and ".join(dict.fromkeys(ways))
+    def _ways(self, motion: int) -> dict[str, list[int]]:
+        """How bodies and tools move, and which of them move so."""
+        ways: dict[str, list[int]] = {}
+        for part in self._moving(motion):
+            half = self.halves[part] if part < len(self.halves) else None
+            ways.setdefault(self._part(part).described(self._of(motion, part), half), []).append(part)
+        return ways
 
     def in_user_units(self) -> "FreeMotions":
         """These motions scaled so that work in them is a force [p L] for a translation, else a moment [p L²]."""
@@ -339,6 +373,7 @@ def free_motions(
         centers=np.vstack([*(own.center for own in of_bodies), poles]),
         to_points=to_points,
         radius=radius,
+        halves=tuple(part.mesh.size / 2 for part in points.mesh.parts),
     )
     held = np.zeros((sum(map(len, of_bodies)), first + 3 * t))
     row = 0

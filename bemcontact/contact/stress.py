@@ -159,8 +159,8 @@ class NoPeak(StrEnum):
     """Why there is no largest stress."""
 
     NO_CONTACT = "the zone does not touch"
-    TO_BOUNDARY = "stress is at least as large up to the boundary"
-    TO_INFINITE = "stress grows up to a place where it is infinite"
+    TO_BOUNDARY = "no maximum inside the body: the largest value is on its boundary"
+    TO_INFINITE = "no maximum: the stress grows towards a place where it is infinite"
 
 
 SHEAR_BELOW, INSIDE, ON_BOUNDARY = "shear below {}", "von Mises, inside", "von Mises, on the boundary"

@@ -1,6 +1,6 @@
 """Several bodies: what a spec says of each, their copies, and the contacts between them."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Self
@@ -21,7 +21,7 @@ from bemcontact.problem.curves import Edge, Pair, unit_vector
 from bemcontact.problem.geometry import AnyEdge, Line
 from bemcontact.problem.material import Material
 from bemcontact.problem.validation import Flag, Name, Number, Point, SpecModel, invalid, left_out
-from bemcontact.problem.wording import described
+from bemcontact.problem.wording import described, unknown_word
 
 SEPARATOR = "/"
 """What stands between the name of a body and that of its edge."""
@@ -53,6 +53,12 @@ class BodySpec(SpecModel):
     """One of several bodies: elastic, rigid, or a copy of another one."""
 
     example: ClassVar[str] = "{material: steel, boundary: {outer: [{name: bottom, start: [0, 0]}, …]}}"
+
+    other_words: ClassVar[Mapping[str, str]] = {
+        "mirror": "a copy is rotated and shifted, not mirrored; state the boundary of the mirrored body",
+        **dict.fromkeys(("angle", "rotation", "turn"), "rotate turns a copy by degrees, about the point about"),
+        **dict.fromkeys(("move", "translate", "offset"), "shift moves a copy by [x, y]"),
+    }
 
     rigid: Flag = False
     """Whether the body is rigid. A rigid body has a boundary only, and stays where it is unless it is a tool."""
@@ -86,7 +92,9 @@ class BodySpec(SpecModel):
         """Refuse what a copy, a rigid body or an elastic body cannot have, and what it needs and does not have."""
         if self.copy_of is not None:
             if self.boundary is not None or self.material is not None or self.rigid:
-                raise invalid("a copy has boundary and material of its original; remove them, or remove copy_of")
+                raise invalid(
+                    "a copy has boundary and material of its original, and is rigid if that is; remove them, or copy_of"
+                )
             return self
         if self.shift != (0.0, 0.0) or self.rotate != 0.0 or self.about != (0.0, 0.0):
             raise invalid("shift, rotate and about place a copy; give copy_of too, or move the points of the boundary")
@@ -100,13 +108,17 @@ class BodySpec(SpecModel):
         return self
 
 
-BETWEEN = "expected two bodies, or two edges as BODY/EDGE, such as between: [roller/under, rail/top]"
+BETWEEN = "expected two bodies, or two edges as BODY/EDGE, such as [roller/under, rail/top]"
 
 
 def _two_sides(value: Any) -> Any:
     """Refuse what is not a pair, before its entries are read."""
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise invalid(f"{BETWEEN}; found {described(value)}")
+    for side in value:
+        for name in side if isinstance(side, list | tuple) else (side,):
+            if isinstance(name, str) and "." in name and SEPARATOR not in name:
+                raise invalid(f"an edge of a body is BODY/EDGE: write '{name.replace('.', SEPARATOR)}' for '{name}'")
     return value
 
 
@@ -120,6 +132,13 @@ class BodyContact(SpecModel):
     """Contact of two bodies without friction."""
 
     example: ClassVar[str] = "{between: [roller/under, rail/top]}"
+    other_words: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("clearance", "play", "interference", "overlap", "offset", "distance"),
+            "gap is the clearance that is added to the gap as drawn; a negative one is an interference",
+        ),
+        **dict.fromkeys(("friction", "friction_coefficient", "mu"), "contact is without friction; leave it out"),
+    }
 
     between: Sides
     """The two sides: a body, or an edge as BODY/EDGE, or a list of edges of one body. Contact points are nodes of the
@@ -162,6 +181,18 @@ class Part:
 def qualified(body: str, edge: str) -> str:
     """Name of an edge of a body in a problem; the edges of an only body keep theirs."""
     return f"{body}{SEPARATOR}{edge}" if body else edge
+
+
+def unknown_edge(name: str, edges: Collection[str]) -> str:
+    """Say that a problem has no edge of a name; one without its body may be that of several bodies."""
+    if SEPARATOR not in name:
+        meant = [edge for edge in edges if edge.partition(SEPARATOR)[2] == name]
+        own = [edge for edge in edges if edge.partition(SEPARATOR)[0] == name]
+        if meant:
+            return f"unknown edge '{name}'; edges of bodies are BODY/EDGE: write {' or '.join(map(repr, meant))}"
+        if any(SEPARATOR in edge for edge in own):
+            return f"'{name}' is a body; name its edges: {', '.join(own)}"
+    return unknown_word("edge", name, edges)
 
 
 def named_loops(boundary: Boundary, body: str) -> tuple[tuple[Edge, ...], ...]:

@@ -5,9 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from bemcontact.errors import Issue, KeyPath
-from bemcontact.problem.bodies import SEPARATOR, BodySpec, qualified
+from bemcontact.problem.bodies import SEPARATOR, BodySpec, qualified, unknown_edge
 from bemcontact.problem.body_surface import BodySurface
-from bemcontact.problem.boundary import size_of_edges
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.contact_zone import ContactZone, RigidTool
 from bemcontact.problem.pin_and_hole import described_sides, pin_and_hole
@@ -22,9 +21,6 @@ COINCIDE = 1e-6
 SAMPLES = 33
 """Places of an edge where the distance is measured."""
 
-INSIDE = 1e-6
-"""Depth over the size of a body from which a place is drawn inside it."""
-
 
 def body_issues(problem: StatedBodies) -> Iterator[Issue]:
     """Issues of the bodies themselves: what belongs to each of them, copies, materials, conditions."""
@@ -35,7 +31,10 @@ def body_issues(problem: StatedBodies) -> Iterator[Issue]:
         ("loads", problem.loads != Loads()),
     ):
         if given:
-            yield KeyIssue(path=(key,), message=f"with several bodies {key} belongs to each of them: bodies.NAME.{key}")
+            belong = "belong" if key.endswith("s") else "belongs"
+            yield KeyIssue(
+                path=(key,), message=f"with several bodies {key} {belong} to each of them: bodies.NAME.{key}"
+            )
     for name, body in problem.bodies.items():
         yield from _copy_issues(problem, name, body)
         if isinstance(body.material, str) and body.material not in problem.materials:
@@ -106,7 +105,7 @@ def contact_issues(problem: StatedBodies, tools: Mapping[str, RigidTool]) -> Ite
         yield from _contour_issues(problem, name, zone, edges)
         for i, edge in enumerate(zone.edges or ()):
             if edge not in edges:
-                yield Issue(path=("contact_zones", name, "edges", i), message=unknown_word("edge", edge, edges))
+                yield Issue(path=("contact_zones", name, "edges", i), message=unknown_edge(edge, edges))
             elif edge in problem.edge_conditions:
                 message = f"edge '{edge}' has a condition and cannot touch; remove one of the two"
                 yield Issue(path=("contact_zones", name, "edges", i), message=message)
@@ -140,7 +139,7 @@ def _contour_issues(problem: StatedBodies, name: str, zone: ContactZone, edges: 
             yield Issue(path=(*path, "surface"), message=message)
     for edge in surface.conditions:
         if edge not in edges:
-            message = unknown_word("edge", edge, edges)
+            message = unknown_edge(edge, edges)
         elif edge.partition(SEPARATOR)[0] != body:
             message = f"'{edge}' is not an edge of '{body}', whose contour this is; remove its condition"
         else:
@@ -191,9 +190,13 @@ def _side_issues(problem: StatedBodies, side: Sequence[str], path: KeyPath, numb
         here = (*path, number) if len(side) == 1 else (*path, number, i)
         body, separator, edge = entry.partition(SEPARATOR)
         if body not in problem.bodies:
-            yield Issue(path=here, message=unknown_word("body", body, problem.bodies))
+            spaced = not separator and [name for name in problem.bodies if entry.startswith(f"{name} ")]
+            message = unknown_word("body", body, problem.bodies)
+            if spaced and (its := entry.removeprefix(spaced[0]).strip()) in _own_edges(problem, spaced[0]):
+                message = f"an edge of a body is BODY/EDGE: write '{qualified(spaced[0], its)}' for '{entry}'"
+            yield Issue(path=here, message=message)
             return
-        own = [item.name for item in problem.boundary_of(body).edges]
+        own = _own_edges(problem, body)
         if separator and edge not in own:
             yield Issue(path=here, message=unknown_word("edge", entry, [qualified(body, name) for name in own]))
         elif not separator and len(side) > 1:
@@ -201,8 +204,14 @@ def _side_issues(problem: StatedBodies, side: Sequence[str], path: KeyPath, numb
                 path=here, message=f"'{entry}' is a whole body; leave the edges of this side out, or name its edges"
             )
         elif separator and edge in problem.bodies[body].conditions:
-            message = f"edge '{entry}' has a condition and cannot touch; remove one of the two"
+            what = "be bonded" if path[0] == "bonded" else "touch"
+            message = f"edge '{entry}' has a condition and cannot {what}; remove one of the two"
             yield Issue(path=here, message=message)
+
+
+def _own_edges(problem: StatedBodies, body: str) -> list[str]:
+    """Names that the edges of a body have in it."""
+    return [edge.name for edge in problem.boundary_of(body).edges]
 
 
 def _pair_issues(problem: StatedBodies, between: tuple[Sequence[str], Sequence[str]], path: KeyPath) -> Iterator[Issue]:
@@ -229,7 +238,7 @@ def _case_issues(problem: StatedBodies, edges: Sequence[str]) -> Iterator[Issue]
                 yield KeyIssue(path=("load_cases", name, "bodies", body), message=message)
         for edge in case.conditions:
             if edge not in edges:
-                message = unknown_word("edge", edge, edges)
+                message = unknown_edge(edge, edges)
                 yield KeyIssue(path=("load_cases", name, "conditions", edge), message=message)
 
 
@@ -273,11 +282,13 @@ def opposite_issues(problem: StatedBodies) -> Iterator[Issue]:
                 sides = " and ".join(", ".join(side) for side in contact.between)
                 message = f"{sides} are nowhere opposite to each other; look at their places and normals"
                 yield Issue(path=path, message=message)
+            again = False
             for pair in {frozenset((part.edge, surface.edges[part.onto].name)) for part in parts}:
                 if (other := pairs.setdefault(pair, name)) != name:
+                    again = True
                     message = f"contact of {' and '.join(sorted(pair))} is stated by '{other}' already; remove one"
                     yield Issue(path=path, message=message)
-            if not surface.elastic:
+            if again or not surface.elastic:
                 continue
             for part in parts:
                 follows.setdefault(surface.edges[part.onto].name, set()).add(part.edge)
@@ -315,26 +326,6 @@ def closed_form_issues(problem: StatedBodies, references: Mapping[str, Reference
                 f"sides are {described_sides(problem, zones[0])}; correct radius and clearance, or name another zone"
             )
             yield Issue(path=("reference", name, "radius"), message=message)
-
-
-def inside_issues(problem: StatedBodies) -> Iterator[Issue]:
-    """Issues of bodies that are drawn wholly inside others which they do not touch: their edges cross nowhere."""
-    stated = {frozenset(problem.sides_of(contact)) for contact in (*problem.contacts, *problem.bonded)}
-    loops = {name: problem.boundary_of(name).loops for name in problem.bodies}
-    middles = {
-        name: np.array([edge.points(np.array([0.5]))[0] for loop in its for edge in loop])
-        for name, its in loops.items()
-    }
-    for name, outer in loops.items():
-        edges = tuple(edge for loop in outer for edge in loop)
-        surface = BodySurface(body=name, elastic=False, edges=edges, loops=outer)
-        low, high = middles[name].min(axis=0), middles[name].max(axis=0)
-        for other, points in middles.items():
-            if other == name or frozenset((name, other)) in stated or (points < low).any() or (points > high).any():
-                continue
-            if (surface.feet(points).gap < -INSIDE * size_of_edges(edges)).all():
-                message = f"'{other}' is drawn inside '{name}', and no contact between them is stated; move one of them"
-                yield Issue(path=("bodies", other), message=message)
 
 
 def _circle(follows: dict[str, set[str]]) -> list[str]:

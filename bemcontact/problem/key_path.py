@@ -51,19 +51,32 @@ def existing_path(data: Any, path: KeyPath) -> KeyPath:
     Keys that are not stated are kept, for they may have defaults. `ProblemError` if the path leads into a value without
     entries, or to an entry that a list or one of the `NAMED` mappings does not have.
     """
+    whole: Any = data
     followed: KeyPath = ()
     for step in path:
         _ensure_named(data, step, followed)
+        _ensure_own(data, step, followed, path)
         if isinstance(data, list | tuple):
             step = _position(data, step, followed)
             data = data[step]
         elif isinstance(step, str) and (data is None or isinstance(data, Mapping)):
             data = (data or {}).get(step)
         else:
-            message = f"it has no entry {dotted((step,))}, because it is {described(data)}; give the path of a value"
+            message = _no_entry(whole, path, followed, data)
             raise ProblemError(Issue(path=followed, message=message))
         followed = (*followed, step)
     return followed
+
+
+def _no_entry(whole: Any, path: KeyPath, followed: KeyPath, data: Any) -> str:
+    """Say that a value has no entries; that of a material which a body names is among the materials."""
+    if followed[:1] == ("bodies",) and followed[2:] == ("material",) and isinstance(data, str):
+        shared = dotted(("materials", data, *path[3:]))
+        others = [name for name, body in whole["bodies"].items() if name != followed[1] and body["material"] == data]
+        too = f", which changes that of {', '.join(map(repr, others))} too" if others else ""
+        return f"it is the name of a material; write {shared}{too}"
+    step = path[len(followed)]
+    return f"it has no entry {dotted((step,))}, because it is {described(data)}; give the path of a value"
 
 
 def _ensure_named(data: Any, step: str | int, path: KeyPath) -> None:
@@ -72,6 +85,15 @@ def _ensure_named(data: Any, step: str | int, path: KeyPath) -> None:
         what = NAMED[path[0]]
         message = f"a change adds no {what}: {unknown_word(what, str(step), data or {})}"
         raise ProblemError(Issue(path=path, message=message))
+
+
+def _ensure_own(data: Any, step: str | int, followed: KeyPath, path: KeyPath) -> None:
+    """Refuse what a copy has from its original."""
+    copied = isinstance(data, Mapping) and step in ("material", "boundary") and data.get("copy_of")
+    if copied and followed[:1] == ("bodies",) and len(followed) == 2:
+        its = dotted(("bodies", copied, *path[2:]))
+        message = f"'{followed[1]}' is a copy of '{copied}' and has its {step}; write {its}, which changes both"
+        raise ProblemError(Issue(path=followed, message=message))
 
 
 def _position(data: list[Any] | tuple[Any, ...], step: str | int, path: KeyPath) -> int:

@@ -23,7 +23,6 @@ from bemcontact.problem.body_checks import (
     body_issues,
     closed_form_issues,
     contact_issues,
-    inside_issues,
     opposite_issues,
 )
 from bemcontact.problem.boundary import Boundary
@@ -37,6 +36,7 @@ from bemcontact.problem.cross_checks import (
     tool_issues,
 )
 from bemcontact.problem.curves import Edge
+from bemcontact.problem.drawn_overlaps import overlap_issues
 from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.joints import without_joints
 from bemcontact.problem.key_path import RawValue, existing_path, parsed_path, with_entry
@@ -75,6 +75,10 @@ class MeshDensity(SpecModel):
 
 
 NO_CONTACT = "there is no contact zone; give at least one, with its edges and its surface"
+NO_BODIES = (
+    "bodies is empty; give each body a name and under it material and boundary, or leave bodies out and give material, "
+    "boundary and contact_zones of one body"
+)
 OF_ONE_BODY = ("material", "boundary", "contact_zones")
 """Keys that a problem of one body needs."""
 
@@ -103,6 +107,9 @@ class Problem(StatedBodies):
         json_schema_extra={"anyOf": [{"required": [*OF_ONE_BODY]}, {"required": ["bodies"]}]},
     )
     root: ClassVar[bool] = True
+    other_words: ClassVar[Mapping[str, str]] = {
+        "body": "bodies has several bodies by name; an only one has material and boundary at the top level"
+    }
 
     tools: dict[Name, RigidTool] = Field(default_factory=dict)
     """The tools by name: rigid surfaces that are displaced, or loaded and free to move; others are fixed."""
@@ -153,8 +160,15 @@ class Problem(StatedBodies):
     @classmethod
     def _missing_parts(cls, raw: RawValue) -> Iterator[Issue]:
         """Issues of a problem of one body without one of its parts."""
-        bodies, zones = raw.below(cls, "bodies").value, raw.below(cls, "contact_zones")
-        if bodies is not None and not (isinstance(bodies, Mapping) and not bodies):
+        if isinstance(raw.value, Mapping) and "body" in raw.value:
+            return
+        bodies, zones = raw.below(cls, "bodies"), raw.below(cls, "contact_zones")
+        if bodies.value is not None and bodies.value != {}:
+            return
+        of_one = (raw.below(cls, key).value for key in ("material", "boundary"))
+        if isinstance(raw.value, Mapping) and bodies.name in raw.value and all(value is None for value in of_one):
+            if bodies.value is not None:  # else it is not a mapping
+                yield Issue(path=bodies.path, message=NO_BODIES)
             return
         yield from missing_keys(cls, raw.value, OF_ONE_BODY)
         if isinstance(zones.value, Mapping) and not zones.value:
@@ -207,7 +221,7 @@ class Problem(StatedBodies):
         if not issues:
             issues += facing_issues(self.edges, stated, self._held_edges())
         if not issues:
-            issues += [*opposite_issues(self), *inside_issues(self), *closed_form_issues(self, self.reference)]
+            issues += overlap_issues(self) or [*opposite_issues(self), *closed_form_issues(self, self.reference)]
         issues += self._mesh_choice_issues(raw, self.edges, self.mesh)
         for part in self.parts:
             issues += mesh_issues(part.boundary, self._boundary_path(part.name), self.mesh.refine)

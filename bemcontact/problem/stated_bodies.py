@@ -18,6 +18,7 @@ from bemcontact.problem.bodies import (
     Sides,
     named_loops,
     placed,
+    unknown_edge,
     with_boundary,
 )
 from bemcontact.problem.body_surface import BodySurface, BodyZone
@@ -32,7 +33,6 @@ from bemcontact.problem.pairing import OppositePart, opposite_parts
 from bemcontact.problem.units import Units
 from bemcontact.problem.validation import Name, SpecModel, Text, Title, left_out
 from bemcontact.problem.visibility import edges_that_see, zone_edges
-from bemcontact.problem.wording import unknown_word
 
 REACH = 0.03
 """Part of the size of the smaller of two whole bodies up to which gaps may close: a larger strain is not small."""
@@ -340,7 +340,7 @@ class StatedBodies(SpecModel):
                 return edge
         known = [edge.name for edge in self.edges]
         path = ("bodies",) if self.several else ("boundary",)
-        raise ProblemError(Issue(path=path, message=unknown_word("edge", name, known)))
+        raise ProblemError(Issue(path=path, message=unknown_edge(name, known)))
 
     def _boundary_path(self, body: str) -> KeyPath:
         """Key path of the boundary of a body."""

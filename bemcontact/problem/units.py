@@ -1,6 +1,6 @@
 """Labels of units, and what is known of numbers where the labels are those of known units."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import ClassVar
 
 from bemcontact.problem.validation import Label, SpecModel
@@ -23,12 +23,17 @@ METAL_IN_MM = (4e4, 4.5e5), (0.2, 0.36)
 """Young's moduli [N/mm²] and Poisson's ratios of metals; foam may have such a modulus in Pa."""
 STEEL = 2.1e11
 """Young's modulus of steel [Pa]."""
+DERIVED = "units has only length and force; pressures, stresses and moduli are in force/length², such as N/mm² or MPa"
+"""What to write for the label of a unit that follows from others."""
 
 
 class Units(SpecModel):
     """Labels of the units of all numbers. Numbers are not converted."""
 
     example: ClassVar[str] = "{length: mm, force: N}"
+    other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("pressure", "stress", "modulus", "young_modulus", "traction", "moment", "density"), DERIVED
+    )
 
     length: Label = ""
     """The label of the unit of length, such as mm."""

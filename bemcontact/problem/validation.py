@@ -188,7 +188,8 @@ def _translated_errors(cls: type[BaseModel], error: ValidationError) -> list[Iss
 
 def misspelled(cls: type[BaseModel], data: Mapping[str, Any]) -> dict[str, str]:
     """Find unknown keys that are probably misspelled: key in the data -> known key that is not given."""
-    unknown = [key for key in data if isinstance(key, str) and key not in cls.model_fields]
+    others = cls.other_words if issubclass(cls, SpecModel) else ()
+    unknown = [key for key in data if isinstance(key, str) and key not in cls.model_fields and key not in others]
     meant = {key: near_by(key, cls.model_fields) for key in unknown} if len(unknown) <= MANY_WORDS else {}
     return {key: word for key, word in meant.items() if word is not None and word not in data}
 

@@ -315,6 +315,14 @@ def zone_forces(record: JsonObject, units: Units) -> dict[str, str]:
     return {zone: _force(force, record, zone, units) for zone, force in record["forces"].items()}
 
 
+def forces_on_bodies(record: JsonObject, units: Units) -> dict[str, str]:
+    """Write the force of each contact, with the body on which it acts if there are several."""
+    sides = record["sides"]
+    return {
+        zone: f"{force} on {sides[zone][0]}" if sides else force for zone, force in zone_forces(record, units).items()
+    }
+
+
 def total_force(record: JsonObject, units: Units) -> tuple[str, str]:
     """Name and write the force of all rigid surfaces on the body; of several bodies, the largest force of a contact.
 

@@ -184,7 +184,7 @@ def _stresses(result: Result, units: Units) -> Iterator[tuple[str, str, str]]:
     if (peak := largest.boundary) is not None:
         yield ON_BOUNDARY, _stress(peak, units), f"{_at(peak, units, size)} on {peak.edge}"
     for label, why in largest.missing.items():
-        yield label, "no largest", why
+        yield label, "none", why
     if len(largest.singular):
         places = [vector((x, y), scale=size) for x, y in largest.singular[:MOST_PLACES].tolist()]
         more = len(largest.singular) - len(places)

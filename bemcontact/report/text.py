@@ -16,7 +16,7 @@ from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.report.bars import mesh_in_short
 from bemcontact.report.contact_words import held_by, search_in_words, units_of
-from bemcontact.report.facts import contact_intervals, facts, peak_of, peak_place, zone_forces
+from bemcontact.report.facts import contact_intervals, facts, forces_on_bodies, peak_of, peak_place
 from bemcontact.report.formatting import seconds_in_words
 from bemcontact.report.tables import add, list_of_facts, table_of
 from bemcontact.report.verdicts import Verdict, case_verdicts, overall, result_verdicts
@@ -61,8 +61,9 @@ def condensed_summary(contact: CondensedContact, path: Path) -> RenderableType:
 
 def cases_summary(cases: CaseResults) -> RenderableType:
     """List certificate and peak of each load case and combination, then force and contact of each zone."""
+    several = any(result.sides for result in cases.results.values())
     table, shown = table_of("load case", "equations", "mesh", "peak", "at"), list_of_facts()
-    zones = table_of("load case", "zone", "force on the body", "contact")
+    zones = table_of("load case", "zone", "force" if several else "force on the body", "contact")
     for name, result in cases.results.items():
         record, units = result.to_dict(), units_of(result.contact)
         verdicts = result_verdicts(result)
@@ -75,7 +76,7 @@ def cases_summary(cases: CaseResults) -> RenderableType:
         ]
         style = "" if result.holds is not False else {"good": "", "fair": "yellow", "bad": "red"}[overall(verdicts)]
         table.add_row(*map(Text, cells), style=style)
-        forces = zone_forces(record, units)
+        forces = forces_on_bodies(record, units)
         places = [*contact_intervals(record, units, short=len(forces) > 1)]  # so that lines stay short
         for i, (zone, force) in enumerate(forces.items()):
             touching = "\n".join(place for where, place in places if where == zone) or "nowhere"

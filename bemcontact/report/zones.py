@@ -18,9 +18,9 @@ from bemcontact.report.facts import (
     contact_intervals,
     coordinate_size,
     force_errors,
+    forces_on_bodies,
     pressed_by,
     resolved_size,
-    zone_forces,
 )
 from bemcontact.report.formatting import vector, with_unit, zero_if_negligible
 from bemcontact.report.peak_places import level_zones
@@ -49,7 +49,7 @@ def zone_rows(record: JsonObject, units: Units) -> Iterator[dict[str, str]]:
     The record is the JSON of a result. A zone that does not touch has a dash for its peak and intensity.
     """
     size, pressed = coordinate_size(record), pressed_by(record)
-    forces, places = zone_forces(record, units), [*contact_intervals(record, units, merged=True)]
+    forces, places = forces_on_bodies(record, units), [*contact_intervals(record, units, merged=True)]
     for zone, force in forces.items():
         own = [place for name, place in places if name == zone]
         moment, errors = zero_if_negligible(record["moments"][zone], pressed * size), force_errors(record, zone)

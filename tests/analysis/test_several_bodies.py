@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from messages import assert_states
 from roller_bearings import ROLLERS, bearing, load_shares
 from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, problem, rigid, stated
 
@@ -378,6 +379,61 @@ def test_bodies_that_bulge_into_each_other_below_a_third_are_named():
     assert "between: [a, b]" in penetration.words or "between: [b, a]" in penetration.words
 
 
+@pytest.mark.parametrize(
+    ("down", "said"),
+    [
+        (0.6, "'disk' penetrates 'base' by …on 'disk/under', beyond the part of this edge that may touch in 'c'"),
+        (0.5, "'disk/under' may touch in 'c' on a part of it only, and is inside its surface"),
+    ],
+)
+def test_an_edge_of_which_a_part_may_touch_is_not_said_to_be_in_no_zone(down, said):
+    """A soft quarter disk comes to lie flat where its gap as drawn is more than 3 % of its size."""
+    disk = [{"name": "under", "kind": "arc", "center": [0, 4], "radius": 4, "angles": [-90, 0]},
+            {"name": "top", "end": [0, 4]}, {"name": "axis"}]  # fmt: skip
+    conditions = {"axis": {"displacement": {"x": 0}}, "top": {"displacement": {"y": -down}}}
+    bodies = {"disk": elastic({"outer": disk}, conditions), "base": rigid(block((-1, 9), (-2, 0)))}
+    notes = solved(bodies, 0.1, c=["disk", "base"]).notes
+    remedy = "educe the load, or name edges in between, such as disk/under…0.17 larger…3 % of the size"
+    assert_states(next(note for note in notes if "'disk/under'" in note), f"{said}…{remedy}")
+    assert_states(next(note for note in notes if "contact reaches" in note), f"goes on smoothly; r{remedy}")
+    assert not any("not in" in note or "make the zone longer" in note for note in notes)
+    named = solved(bodies, 0.1, c=["disk/under", "base"])
+    assert named.penetration is None
+    assert not any("'disk/under'" in note for note in named.notes)
+
+
+def test_a_plane_without_ends_that_another_body_penetrates_may_be_a_rigid_body():
+    """The upper block hangs over the lower one and bends down beside it, into the floor of the lower one alone."""
+    bodies = {
+        "low": elastic(block((0, 4), (0, 0.3))),
+        "up": elastic(block((0, 12), (0.3, 1)), {"right": {"displacement": {"x": 0, "y": -0.4}}}),
+    }
+    plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+    spec = stated(
+        name="a floor", bodies=bodies, accuracy=0.1, contacts={"face": {"between": ["up/bottom", "low/top"]}},
+        contact_zones={"floor": {"edges": "low/bottom", "surface": plane}},
+    )  # fmt: skip
+    result = bemcontact.solve(spec)
+    told = [*result.notes, *([] if result.penetration is None else [result.penetration.words])]
+    assert_states(
+        next(note for note in told if "'up' penetrates" in note),
+        "The body 'up' penetrates the surface of 'floor'…no edge in that zone…a body with rigid: true",
+    )
+
+
+def test_a_point_outside_of_a_body_is_told_of_which_one():
+    result = bemcontact.solve(roller())
+    for body, states in (
+        ("disk", "(9, 9) is outside the undeformed body 'disk'…inside the body 'disk' or on its boundary"),
+        (None, "(9, 9) is in none of the undeformed bodies"),
+    ):
+        with pytest.raises(bemcontact.ProblemError) as caught:
+            result.stress([[9.0, 9.0]], body=body)
+        assert_states(str(caught.value), states)
+    assert result.stress([[0.0, 0.0]]).components == pytest.approx(result.stress([[0.0, 0.0]], body="disk").components)
+    assert next(iter(result.problem.bodies)) == "disk", "the first one that is stated"
+
+
 @pytest.mark.parametrize("bonded", [False, True])
 def test_a_stress_operator_gives_the_stress_of_each_body(bonded):
     """Of a half disk on a block, whose lower part is another body. The operator is another sum of the same numbers."""
@@ -420,6 +476,7 @@ def test_forces_of_contacts_are_not_summed_over_bodies():
     assert all(": (0, 2.000" in value for value in told)
     page = render(result, {}, None)
     assert "of all surfaces" not in page
+    assert "on middle" in page
     assert "normals of the second body" not in page
     rows = list(csv.DictReader(io.StringIO(largest_stresses_csv(result))))
     assert {row["body"] for row in rows if row["value"]} <= {"top", "middle", "low"}

@@ -52,8 +52,8 @@ UP, TURN, SIDE = "translation along (0, 1)", "rotation counterclockwise about", 
             (
                 SIDE,
                 f"{UP} of the body, the tool 'press' and the tool 'table' together",
-                f"{TURN} (1, 0.5) and {TURN} (1, 1) and {TURN} (1, 0) of the body, the tool 'press' and the tool "
-                "'table' together",
+                f"{TURN} (1, 0.5) of the body, together with the {TURN} (1, 1) of the tool 'press', together with the "
+                f"{TURN} (1, 0) of the tool 'table'",
             ),
         ),
         (
@@ -148,7 +148,7 @@ def test_arms_turn_amplitudes_into_angles(name: str):
     of_body = (x * dy - y * dx) / (x**2 + y**2)
     for motion, described in enumerate(seen.describe()):
         angles = [of_body[motion], *seen.tools[2::3, motion]]
-        sense = {"rotation counterclockwise": 1, "rotation clockwise": -1}.get(described.split(" about")[0], 0)
+        sense = 1 if " counterclockwise" in described else -1 if " clockwise" in described else 0
         assert sum(angles) == pytest.approx(sense / seen.arms[motion], rel=1e-12, abs=1e-12)
 
 
@@ -189,8 +189,9 @@ def test_a_pole_that_is_far_away_is_said_to_be_nearly_a_translation(far: float, 
     motion = RigidMotions(coefficients=sign * np.array([[0.0, far, 1.0]]), center=np.array([1.0, 2]), radius=3.0)
     (told,) = motion.describe()
     sense = "counterclockwise" if sign > 0 else "clockwise"
-    assert told.startswith(f"rotation {sense} about ({1 - 3 * far:.4g}, 2)")
-    assert told.endswith(f"nearly a translation along (0, {sign * np.sign(far):.0f})") is (abs(far) > FAR)
+    turn = f"rotation {sense} about ({1 - 3 * far:.4g}, 2)"
+    along = f"translation along (0, {sign * np.sign(far):.0f}) with a small {sense} turn"
+    assert told == (along if abs(far) > FAR else turn)
     points = np.array([1.0, 2]) + 3.0 * np.array([[-1, 0], [1, 0], [0, 1]])
     moved, middle = (motion.displacement(at)[..., 0] for at in (points, np.array([[1.0, 2]])))
     if abs(far) > FAR:
@@ -206,3 +207,44 @@ def test_free_motions_of_many_points_need_no_square_matrix():
     tracemalloc.stop()
     assert (moving.shape, still.shape) == ((3, 3), (0, 3))
     assert peak < 1 << 20
+
+
+def of_three(coefficients: list[float], halves: tuple[float, ...] = (1.0, 2.0, 1.0)) -> FreeMotions:
+    """A motion of three bodies about their centers (0, 0), (10, 0) and (20, 0)."""
+    return FreeMotions(
+        coefficients=np.array([coefficients]),
+        names=(),
+        centers=np.array([[0.0, 0], [10, 0], [20, 0]]),
+        to_points=np.zeros((0, 0)),
+        radius=2.0,
+        bodies=("the body 'a'", "the body 'b'", "the body 'c'"),
+        halves=halves,
+    )
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "says"),
+    [
+        ([0, 1, 0, 0, 1, 0, 0, 0, 0], f"{UP} of the body 'a' and the body 'b' together"),
+        ([0, 1, 0, 0, 1, 0, 1, 0, 0],
+         f"{UP} of the body 'a' and the body 'b' together, together with the {SIDE} of the body 'c'"),
+        ([0, 0, 1, 0, 0, 0, 1, 0, 0], f"{TURN} (0, 0) of the body 'a', together with the {SIDE} of the body 'c'"),
+        # a pole at a distance of 5 from the center is far from a body of the size 2, and not from one of the size 4
+        ([0, 2.5, 1, 0, 0, 0, 0, 0, 0], f"{UP} with a small counterclockwise turn of the body 'a'"),
+        ([0, 0, 0, 0, 2.5, 1, 0, 0, 0], f"{TURN} (5, 0) of the body 'b'"),
+    ],
+)  # fmt: skip
+def test_parts_that_do_not_move_alike_are_described_each(coefficients, says):
+    assert of_three(coefficients).describe() == (says,)
+
+
+def test_a_joint_motion_of_many_bodies_is_not_described_body_by_body():
+    motion = of_three([0, 0, 1, 0, 0, 1, 0, 0, -1])
+    assert motion.describe()[0].count("together with the") == 2
+    many = FreeMotions(
+        coefficients=np.tile([0.0, 0, 1], 4)[None], names=(), centers=np.arange(8.0).reshape(4, 2),
+        to_points=np.zeros((0, 0)), radius=1.0, bodies=tuple(f"the body '{i}'" for i in range(4)),
+    )  # fmt: skip
+    (text,) = many.describe()
+    assert text.startswith("joint motion of the body '0', the body '1', the body '2' and the body '3' together: that")
+    assert text.endswith(f"with the {TURN} (0, 1) of the body '0'")

@@ -49,6 +49,36 @@ def test_path_to_a_missing_entry_is_refused(path, message):
     assert str(caught.value) == message
 
 
+BODIES = {
+    "materials": {"steel": {"young_modulus": 1}},
+    "bodies": {
+        "low": {"material": "steel", "boundary": {}},
+        "up": {"material": "steel", "boundary": {}},
+        "own": {"material": {"young_modulus": 2}, "boundary": {}},
+        "twin": {"material": None, "boundary": None, "copy_of": "low"},
+    },
+}
+
+
+@pytest.mark.parametrize(
+    ("path", "message"),
+    [
+        ("bodies.low.material.young_modulus", "bodies.low.material: it is the name of a material; write "
+         "materials.steel.young_modulus, which changes that of 'up' too"),
+        ("bodies.twin.material.young_modulus", "bodies.twin: 'twin' is a copy of 'low' and has its material; write "
+         "bodies.low.material.young_modulus, which changes both"),
+        ("bodies.twin.boundary.outer", "bodies.twin: 'twin' is a copy of 'low' and has its boundary; write "
+         "bodies.low.boundary.outer, which changes both"),
+    ],
+)  # fmt: skip
+def test_a_value_that_bodies_share_is_to_be_changed_where_it_is_stated(path, message):
+    with pytest.raises(ProblemError) as caught:
+        existing_path(BODIES, parsed_path(path))
+    assert str(caught.value) == message
+    assert existing_path(BODIES, parsed_path("bodies.own.material.young_modulus"))
+    assert existing_path(BODIES, parsed_path("bodies.low.material"))
+
+
 def test_replacing_an_entry_does_not_change_the_original():
     changed = with_entry(DATA, ("outer", 1, "n"), 7)
     assert changed["outer"] == [{"name": "top", "n": 1}, {"name": "left", "n": 7}]

@@ -13,6 +13,9 @@ from hypothesis import strategies as st
 from mesh_studies import on_one_mesh
 from messages import assert_states
 from rich.console import Console, RenderableType
+from several_bodies import HELD as LOW
+from several_bodies import block as several_block
+from several_bodies import elastic
 from tool_problems import BETWEEN, FREE, FREE_CASES, HELD, HELD_CASES, made, not_met
 
 import bemcontact
@@ -280,6 +283,23 @@ def test_a_symmetric_roller_does_not_turn(radius: float, center: float, pressed_
     assert turns == ["0"] * (1 + (pressed_by == "tool"))
     assert "counterclockwise" in listed[0]
     assert not [bar for bar in result.accuracy.bars if bar.quantity == "rotation"]
+
+
+def test_the_forces_of_load_cases_of_several_bodies_are_those_on_a_named_one():
+    """No body is "the body" there; of one body it is."""
+    bodies = {
+        "up": elastic(several_block((0, 2), (0, 1), (2,) * 4)),
+        "low": elastic(several_block((0, 2), (-1, 0)), LOW),
+    }
+    spec = Problem(
+        name="two", bodies=bodies, contacts={"face": {"between": ["up/bottom", "low/top"]}}, accuracy=0.1,
+        load_cases={name: {"conditions": {"up/top": {"pressure": p}}} for name, p in (("one", 1), ("two", 2))},
+    )  # pyright: ignore  # fmt: skip
+    lines = shown(text.cases_summary(bemcontact.solve_cases(spec))).splitlines()
+    assert not any("force on the body" in line for line in lines)
+    assert sum("(0, 2.00" in line and " on up" in line for line in lines) == 1
+    assert sum("(0, 4.00" in line and " on up" in line for line in lines) == 1
+    assert "force on the body" in shown(text.cases_summary(all_cases()))
 
 
 def test_the_worst_case_is_named():

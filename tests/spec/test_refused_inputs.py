@@ -120,9 +120,53 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
     ],
 }
 """Kind of a mistake -> what is replaced in the good spec, and by what."""
+BODIES = """\
+name: two blocks
+materials: {steel: {young_modulus: 210e3, poisson_ratio: 0.3}}
+bodies:
+  up:
+    material: steel
+    boundary:
+      outer:
+        - {name: bottom, start: [0, 0], end: [2, 0]}
+        - {name: side, end: [2, 1]}
+        - {name: top, end: [0, 1]}
+        - {name: left}
+    conditions: {left: {displacement: {x: 0}}}
+  low:
+    material: steel
+    boundary:
+      outer:
+        - {name: bottom, start: [-1, -1], end: [3, -1]}
+        - {name: side, end: [3, 0]}
+        - {name: top, end: [-1, 0]}
+        - {name: left}
+    conditions: {bottom: {displacement: {x: 0, y: 0}}}
+  peg: {copy_of: up, shift: [9, 0], conditions: {bottom: {displacement: {x: 0, y: 0}}}}
+contacts:
+  face: {between: [up/bottom, low/top]}
+load_cases:
+  press: {conditions: {up/top: {pressure: 1}}}
+"""
+"""A spec of several bodies without mistakes."""
+CHANGES_OF_BODIES = [
+    ("shift: [9, 0], ", ""),
+    ("shift: [9, 0]", "rotate: 360"),
+    ("shift: [9, 0]", "shift: [1.5, 0.5]"),
+    ("shift: [9, 0]", "shift: [0.5, -0.9]"),
+    ("[up/bottom, low/top]}", "[up/bottom, low/top]}\n  again: {between: [low, up]}"),
+    ("[up/bottom, low/top]}", "[up/bottom, low/top], clearance: 0.1}"),
+    ("[up/bottom, low/top]", "[up/bottom, low/left]"),
+    ("[up/bottom, low/top]", "[up, lower]"),
+    ("contacts:", "units: {length: mm, pressure: GPa}\ncontacts:"),
+    ("contacts:", "bonded: {glue: [up/left, low/left]}\ncontacts:"),
+    ("contacts:", "conditions: {up/left: {displacement: {x: 0}}}\ncontacts:"),
+]
+"""What is replaced in the spec of several bodies, and by what."""
 TEXTS: list[tuple[str, Callable[[], str | bytes]]] = [
     ("an empty file", lambda: ""),
     ("`- a list`", lambda: "- a list"),
+    ("`name: a`, `bodies: {}`", lambda: "name: a\nbodies: {}"),
     ("600 opening brackets", lambda: "[" * 600),
     ("nine aliases of nine aliases of nine …", lambda: "a0: &a0 [x]\n" + "".join(
         f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]\n" for i in range(1, 10))),
@@ -204,18 +248,17 @@ def code(text: str) -> str:
     return "<br>".join(f"`` {line} ``" for line in visible.rstrip("\n").split("\n"))
 
 
-def rows_of(changes: list[tuple[str, str]]) -> Iterator[tuple[str, ...]]:
-    """Rows of the changes to the good spec: the lines that replace others, and the message that they get."""
+def rows_of(changes: list[tuple[str, str]], right: str = GOOD, case: str = "more") -> Iterator[tuple[str, ...]]:
+    """Rows of the changes to a right spec: the lines that replace others, and the message that they get."""
     for old, new in changes:
-        assert old in GOOD
-        wrong = GOOD.replace(old, new, 1)
+        assert old in right
+        wrong = right.replace(old, new, 1)
         Path("a.yaml").write_text(wrong, encoding="utf-8")
-        yield *changed_lines(wrong.split("\n")), refusal("check a.yaml --case more")
+        yield *changed_lines(right.split("\n"), wrong.split("\n")), refusal(f"check a.yaml --case {case}")
 
 
-def changed_lines(wrong: list[str]) -> tuple[str, str]:
+def changed_lines(good: list[str], wrong: list[str]) -> tuple[str, str]:
     """Numbers of the lines of the good spec that a wrong one replaces, or before which it has more, and its own."""
-    good = GOOD.split("\n")
     same = equal_lines(good, wrong)
     rest = equal_lines(good[same:][::-1], wrong[same:][::-1])
     first, last = same + 1, len(good) - rest
@@ -258,6 +301,8 @@ def page(folder: Path) -> str:
             "what `bemcontact check a.yaml` prints; it begins with file, line and column. "
             "→ stands for a tab and ␀ for the character 0.",
             *(f"## {kind}\n\n{table(('Line', 'Changed to'), rows_of(changes))}" for kind, changes in CHANGES.items()),
+            f"## Several bodies\n\nHere `a.yaml` is this file with one change.\n\n```yaml\n{BODIES}```\n\n"
+            + table(("Line", "Changed to"), rows_of(CHANGES_OF_BODIES, BODIES, "press")),
             "## Whole files\n\nHere `a.yaml` has another content.\n\n"
             + table(("Content of `a.yaml`",), rows_of_texts()),
             "## Commands\n\nThe file `good.yaml` is the problem above.\n\n"
