@@ -52,6 +52,8 @@ MATRICES = 3
 """Number of full matrices of all degrees of freedom that are in memory at the same time."""
 WEDGE = 0.02
 """Part of a rigid normal along which conditions leave a point free, up to which the point slides into a wedge."""
+MANY = 3
+"""Motions held at zero up to which each has a note of its own."""
 IDLE = 1e-7
 """Least normal displacement, over that of the motion, of a motion that opens gaps."""
 
@@ -214,10 +216,10 @@ class Body:
     @property
     def notes(self) -> tuple[str, ...]:
         """Decisions that a user should know."""
-        at_zero = tuple(
-            f"the {motion} moves no contact point and has no load: it is held at zero"
-            for motion in self.unseen.describe()
-        )
+        ways = self.unseen.describe()
+        at_zero = [f"the {way} moves no contact point and has no load: it is held at zero" for way in ways]
+        if len(ways) > MANY:
+            at_zero = [f"these move no contact point and have no load, and are held at zero: the {', the '.join(ways)}"]
         materials = [part.material for part in self.problem.parts]
         stated = dict.fromkeys(
             doubt

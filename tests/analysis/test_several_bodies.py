@@ -12,6 +12,7 @@ from roller_bearings import ROLLERS, bearing, load_shares
 from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, problem, rigid, stated
 
 import bemcontact
+from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.bem.body import body_of
 from bemcontact.report.facts import facts
 from bemcontact.report.result_page import render
@@ -352,6 +353,29 @@ def test_nothing_spins_a_disk_without_friction(modulus, exchanged):
     assert any("rotation counterclockwise about (0, 2)" in note and "held at zero" in note for note in result.notes)
     for name, (x, y) in result.footprint.forces.items():
         assert result.footprint.moments[name] == pytest.approx(-2 * x, abs=1e-9 * abs(y))
+
+
+def test_many_motions_that_are_held_at_zero_have_one_note():
+    """Disks on a block, each of which may spin."""
+    disks = {
+        f"disk {i}": elastic(
+            {"outer": [{"name": "rim", "kind": "arc", "center": [3 * i, 1], "radius": 1, "angles": [0, 360]}]}
+        )
+        for i in range(4)
+    }
+    bodies = {
+        **disks,
+        "base": elastic(block((-2, 11), (-3, 0)), HELD),
+        "lid": elastic(block((-2, 11), (2, 4)), {"top": {"displacement": {"x": 0, "y": -0.01}}}),
+    }
+    contacts = {
+        f"{name} {side}": [f"{name}/rim", edge]
+        for name in disks
+        for side, edge in (("low", "base/top"), ("high", "lid/bottom"))
+    }
+    (note,) = [note for note in body_of(first_mesh(problem(bodies, 0.05, **contacts))).notes if "at zero" in note]
+    assert note.startswith("these move no contact point and have no load, and are held at zero: the rotation")
+    assert all(f"'disk {i}'" in note for i in range(4))
 
 
 def test_three_bodies_that_meet_in_one_point():
