@@ -13,7 +13,7 @@ from bemcontact.analysis.linear_theory import Noticed, linear_theory
 from bemcontact.analysis.path_states import FollowedPath
 from bemcontact.analysis.placement import part_of_path, placement
 from bemcontact.analysis.second_order import second_order
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.penetration import ROUND_OFF, Misfit, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.body import Body
@@ -105,7 +105,7 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
     )
     inverted = [signed_area(one) * signed_area(other) < 0 for one, other in zip(drawn, chords, strict=True)]
     if not any(inverted) and _crossing(chords, bodies, stated, gaps) is None:
-        return None
+        return _swallowed(gaps, loops, drawn, chords, bodies, stated)
     places = [gaps.moved(elements) for elements in loops]
     meeting = _crossing([item[:, :-1].reshape(-1, 2) for item in places], bodies, stated, gaps)
     if any(inverted):
@@ -154,6 +154,42 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
             "in the middle of the slot, if it is symmetric."
         ),
     )  # fmt: skip
+
+
+def _swallowed(
+    gaps: SurfaceGaps, loops: Sequence[IntArray], drawn: Sequence[Array], moved: Sequence[Array],
+    bodies: Sequence[str], stated: Collection[frozenset[str]],
+) -> Penetration | None:  # fmt: skip
+    """Find a body that has moved wholly into another one, so that their boundaries cross nowhere."""
+    for i, name in enumerate(bodies):
+        for other in dict.fromkeys(bodies):
+            if other == name or frozenset((name, other)) in stated:
+                continue
+            own = [number for number, body in enumerate(bodies) if body == other]
+            before, after = (_is_inside(lines[i][0], [lines[j] for j in own]) for lines in (drawn, moved))
+            if after and not before:
+                x, y = drawn[i][0].tolist()
+                edge = gaps.outline.mesh.edge_names[gaps.outline.mesh.edge[loops[i][0]]]
+                return Penetration(
+                    kind=Misfit.ITSELF, depth=float(np.hypot(*(moved[i][0] - drawn[i][0]))), allowed=0.0, at=(x, y),
+                    edge=edge, zone="", paired=False,
+                    words=(
+                        f"The body '{name}' lies inside '{other}' after the motion. No contact between them is stated; "
+                        f"add one, such as between: [{name}, {other}]."
+                    ),
+                )  # fmt: skip
+    return None
+
+
+def _is_inside(point: Array, lines: Sequence[Array]) -> bool:
+    """Whether a point (2,) is inside closed lines (k, 2): a ray from it crosses them an odd number of times."""
+    (x, y), crossings = point, 0
+    for line in lines:
+        start, end = line, np.roll(line, -1, axis=0)
+        across = (start[:, 1] > y) != (end[:, 1] > y)
+        part = (y - start[across, 1]) / (end[across, 1] - start[across, 1])
+        crossings += int((start[across, 0] + part * (end[across, 0] - start[across, 0]) > x).sum())
+    return crossings % 2 == 1
 
 
 def _without_details(line: Array, length: float) -> Array:

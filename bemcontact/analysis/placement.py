@@ -23,6 +23,8 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.formulations import complementarity
+from bemcontact.problem.body_surface import BodySurface
+from bemcontact.problem.edge_places import curvatures, nearest_on, places_at
 from bemcontact.problem.problem import Problem
 
 LEAST_ASKED = 0.01
@@ -103,7 +105,8 @@ def placement(
     finite = [name for name in contact.zone_names if name not in infinite]
     misfit, said = _changed(gaps, points, contact, solution, again, moved, nearby, finite)
     if misfit is None and nearby is None:
-        said = (*said, *_places_changed(gaps, contact, solution, replace(contact, **there), again))
+        misfit, others = _pairs_changed(gaps, points, contact, solution, moved)
+        said = (*said, *others, *_places_changed(gaps, contact, solution, replace(contact, **there), again))
     return misfit, (*overhangs, *turned, *said)
 
 
@@ -131,6 +134,43 @@ def _slides(
     words = f"{words[0].upper()}{words[1:]}."
     i = int(np.argmax(contact.weights * solution.pressure))
     return _misfit(gaps, points, contact, i, Misfit.MOVED, size / total, least, words), ()
+
+
+def _pairs_changed(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution, moved: Displaced
+) -> tuple[Penetration | None, tuple[str, ...]]:
+    """Judge how far two elastic bodies move beside the way to where they touch as drawn, as a pin does in its hole.
+
+    Other points are opposite to each other then. Along a curved boundary the distances of pairs are off by the motion
+    over its radius, and a peak by about half of this: measured with pins that are drawn beside where they come to lie.
+    """
+    said = list[str]()
+    for number, zone in enumerate(contact.zone_names):
+        surface, pressure = gaps.surfaces.get(zone), np.where(contact.zone == number, solution.pressure, 0.0)
+        if not isinstance(surface, BodySurface) or not surface.first or not (pressure > 0).any():
+            continue
+        motion = _motion_in(contact, moved, number, pressure)
+        i = int(pressure.argmax())
+        pair, place = surface.pairs(contact.points[i : i + 1]), nearest_on(surface.first, contact.points[i : i + 1])
+        other = places_at(surface.edges, pair.edge, pair.fraction)
+        bends = (
+            surface.share * abs(curvatures(surface.first, place)),
+            (1 - surface.share) * abs(curvatures(surface.edges, other)),
+        )
+        part = float(np.hypot(*(motion + np.array(surface.approach))) * sum(bends)[0]) / 2
+        if part < noted(gaps.problem):
+            continue
+        words = (
+            f"both sides of '{zone}' move by {_vector(motion, gaps.problem.units.length)} against each other, beside "
+            "the way to where they touch as drawn: other points are opposite to each other then, and the peak pressure "
+            f"may be off by about {100 * part:.2g} %; draw the body near to where it will touch"
+        )
+        if part >= WITHHELD:
+            depth = float(np.hypot(*motion))
+            words = f"{words[0].upper()}{words[1:]}."
+            return _misfit(gaps, points, contact, i, Misfit.MOVED, depth, 0.0, words), ()
+        said.append(f"{words}; error bars do not include this")
+    return None, tuple(said)
 
 
 def noted(problem: Problem) -> float:
