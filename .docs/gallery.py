@@ -55,13 +55,13 @@ Each file here states one problem with a known answer. This command solves one a
 bemcontact solve models/cylinder_on_plane.yaml --figure contact.svg
 ```
 
-- Grey: the bodies, with displacements to scale, and hatched rigid surfaces. Dashed lines show the undeformed bodies.
+- Pale: the bodies, with displacements to scale. Grey: hatched rigid surfaces. Dashed lines show the undeformed bodies.
   Where the contact is small, only the part of the body around it is drawn.
 - Blue: supports. A model of a half or a quarter has rollers on its planes of symmetry.
-- Green: loads on the boundary.
-- Orange: the contact pressure, with its largest value in each contact. At the edge of a punch and at a corner that
-  presses on a surface, the largest value depends on the mesh. There the picture cuts the pressure off at three times
-  its mean.
+- Green: loads on the boundary, and the direction of weight.
+- Orange: the contact pressure, with its largest value in each contact, or of many contacts in one. At the edge of a
+  punch and at a corner that presses on a surface, the largest value depends on the mesh. There the picture cuts the
+  pressure off at three times its mean.
 
 No file states a mesh. The errors are those of the default formulation on the mesh that is found for 1 %, or for the
 accuracy that the file asks for. Each error is the largest over all load cases.

@@ -54,6 +54,7 @@ CAPTIONS = {
     "contact": "Where the body touches, and how hard; displacements are to scale",
     "contacts": "Where the body touches in each load case; all pressures have one scale",
     "deformed": "{stress} on the deformed shape; the surfaces move with the magnification",
+    "forces": "Largest pressure and force of each contact",
 }
 """Name of a picture -> its caption."""
 MOST_FORCES = 3

@@ -10,6 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
 from scipy.spatial import KDTree
+from several_bodies import block, elastic, polygon, rigid
+from several_bodies import problem as several
 
 from bemcontact.problem import Problem
 
@@ -104,3 +106,46 @@ def curves(axes: Axes) -> dict[str, Line2D]:
 
 def drawn(line: Line2D) -> np.ndarray:
     return np.asarray(line.get_ydata(), float)
+
+
+def hub_on_a_shaft() -> Problem:
+    """A quarter of a hub that is pressed on a shaft of radius 2 with an interference of 0.002, not drawn."""
+    walls = {"floor": {"displacement": {"y": 0}}, "wall": {"displacement": {"x": 0}}}
+    arc = {"kind": "arc", "center": [0, 0], "elements": 8}
+    shaft = [
+        {"name": "floor", "start": [0, 0], "end": [2, 0], "elements": 3},
+        {**arc, "name": "rim", "radius": 2, "angles": [0, 90]},
+        {"name": "wall", "elements": 3},
+    ]
+    hub = [
+        {"name": "floor", "start": [2, 0], "end": [4, 0], "elements": 3},
+        {**arc, "name": "outside", "radius": 4, "angles": [0, 90]},
+        {"name": "wall", "elements": 3},
+        {**arc, "name": "bore", "radius": 2, "angles": [90, 0]},
+    ]
+    bodies = {name: elastic({"outer": edges}, walls) for name, edges in {"shaft": shaft, "hub": hub}.items()}
+    return several(bodies, fit={"between": ["shaft/rim", "hub/bore"], "gap": -0.002})
+
+
+def roller_in_a_groove() -> Problem:
+    """A heavy roller in a rigid V-block, which it touches at two places far apart."""
+    rim = {"name": "rim", "kind": "arc", "center": [0, 14.142135623730951], "radius": 10, "angles": [90, 450]}
+    roller = elastic(
+        {"outer": [{**rim, "elements": 128}]}, loads={"gravity": {"density": 1, "acceleration": [0, -0.02]}}
+    )
+    block = rigid(
+        polygon(
+            bottom=(-20, -10), right=(20, -10), over=(20, 12), to_the_right=(12, 12), to_the_left=(0, 0),
+            beside=(-12, 12), left=(-20, 12),
+        )
+    )  # fmt: skip
+    return several({"roller": roller, "block": block}, seat=["roller", "block"])
+
+
+def leaves() -> Problem:
+    """A long leaf on a short one, both held at one end: too slender for two lines of text."""
+    held = {"left": {"displacement": {"x": 0, "y": 0}}}
+    long = block((0, 100), (0, 4), (24, 2, 24, 2))
+    short = block((0, 60), (-4, 0), (16, 2, 16, 2))
+    bodies = {"long": elastic(long, {**held, "right": {"traction": {"y": -0.01}}}), "short": elastic(short, held)}
+    return several(bodies, leaves=["short/top", "long/bottom"])

@@ -27,12 +27,13 @@ from bemcontact.report.figures.page import (
     distance_label,
     labeled,
     legend_below,
+    only_around,
     pieces_of,
     plain,
     short_label,
     show_decades,
 )
-from bemcontact.report.figures.result import AROUND, intervals_on, label_closed, window_around
+from bemcontact.report.figures.result import intervals_on, label_closed, window_around
 from bemcontact.report.formatting import number, with_unit
 
 DASHES = ("solid", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
@@ -200,7 +201,8 @@ class _Along:
     def finish(self, axes: Axes) -> None:
         """Name the axis, and the pieces if there are several."""
         whole = sum(len(piece.index) for piece in self.pieces) == self.contact.size
-        axes.set_xlabel(distance_label(self.contact, self.pieces) + f"\n{AROUND}" * (not whole))
+        label = distance_label(self.contact, self.pieces)
+        axes.set_xlabel(label if whole else only_around(label))
         if len(self.pieces) > 1:
             self._name_pieces(axes)
         legend_below(axes)

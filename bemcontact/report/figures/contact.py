@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,12 +13,12 @@ from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
 from bemcontact.bem.mesh import BoundaryState, element_curves
 from bemcontact.options import StressMeasure
+from bemcontact.problem import Problem
 from bemcontact.report.bars import with_bar, without_digits_beyond
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import LEVEL
 from bemcontact.report.figures.page import (
     BLACK,
-    BODY,
     CUT,
     GREY,
     VERMILION,
@@ -25,11 +26,19 @@ from bemcontact.report.figures.page import (
     frame_plan,
     pieces_of,
     plain,
+    short_label,
     without_glyph_warnings,
 )
-from bemcontact.report.figures.problem import Displacement, draw_loads, draw_supports
+from bemcontact.report.figures.problem import (
+    Displacement,
+    body_names,
+    draw_loads,
+    draw_supports,
+    draw_weights,
+    fills,
+)
 from bemcontact.report.figures.stress import fill_with_stress
-from bemcontact.report.figures.surfaces import surfaces_of
+from bemcontact.report.figures.surfaces import Surface, surfaces_of
 from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, place_names, settle
 from bemcontact.report.formatting import with_unit
 
@@ -43,6 +52,12 @@ BENT = 0.2
 """Turn of the normals of a fan, in radians, from which on their crossing would be seen."""
 CLOSE, AROUND = 0.35, 1.0
 """Extent of a contact over that of the body below which it has a close-up, and the extents to either side there."""
+APART = 2.0
+"""Distance of two contacts over the extent of one from which a close-up shows only one of them."""
+NUMBERS = 4
+"""Most contacts whose largest pressures are written into the picture of all bodies."""
+WHOLE = 0.5
+"""Length of a rigid body that is shown beyond the elastic ones, over the size of what is shown."""
 ROOM = 1.5
 """Room for a fan and its number over the length of the fan."""
 OVERHANG = 0.14
@@ -116,8 +131,7 @@ def setting_of(results: Sequence[Result], zone: str | None = None) -> Setting:
     ]  # fmt: skip
     part = zone is not None and any(fans)
     if zone is not None and part:
-        size = max(body_extent(states[0]))
-        windows = [_around(_nearest(own, zone, size)) for own in fans if own]
+        windows = [_around(_region(own)) for own in fans if own]
     else:
         windows = [_curves(state)[1].reshape(-1, 2) for state in states]
     places = np.concatenate(windows)
@@ -130,8 +144,8 @@ def setting_of(results: Sequence[Result], zone: str | None = None) -> Setting:
 
 
 def _peak_text(fan: Fan, fans: Sequence[Fan], bar: float | None) -> str:
-    """The largest pressure of a piece of contact, with the error bar of its zone if it is the largest there."""
-    largest = fan.peak == max(other.peak for other in fans if other.zone == fan.zone)
+    """The largest pressure of a piece of contact, with the error bar of its zone if it may be the largest there."""
+    largest = fan.peak >= max(other.peak for other in fans if other.zone == fan.zone) - (bar or 0.0)
     return with_bar(fan.peak, bar) if largest else without_digits_beyond(fan.peak, bar)
 
 
@@ -143,8 +157,8 @@ def close_ups(result: Result, share: float = CLOSE) -> list[str]:
     size = max(body_extent(state))
     fans = [*_fans(result, state)]
     return [
-        zone for zone in result.contact.zone_names if any(f.zone == zone for f in fans)
-        and float(np.ptp(_nearest(fans, zone, size), axis=0).max()) < share * size
+        zone for zone in result.contact.zone_names if (own := [fan for fan in fans if fan.zone == zone])
+        and float(np.ptp(_region(own), axis=0).max()) < share * size
     ]  # fmt: skip
 
 
@@ -159,8 +173,8 @@ def draw_contact(
     The fan lies outside the body, along the normals of the rigid surface. The largest pressure of each unbroken piece
     of contact is written beside it; one that is infinite is cut off and written as such. Of a `zone` only its contact
     is drawn, with as much of the body to either side, without supports and loads; if it has several contacts far from
-    each other, that with the largest pressure. With a `stress` the body is filled with its contours. `ValueError` for
-    the result of a condensed problem.
+    each other, that with the largest pressure. Of many zones only the largest pressure is written, with its zone. With
+    a `stress` the body is filled with its contours. `ValueError` for the result of a condensed problem.
     """
     write = sketch_contact(axes, result, zone, stress=stress)
     settle(axes)
@@ -173,35 +187,46 @@ def sketch_contact(
     zone: str | None = None,
     setting: Setting | None = None,
     stress: StressMeasure | None = None,
+    *,
+    numbers: bool = True,
 ) -> Callable[[], None]:
-    """Draw as `draw_contact` does, and return what writes the numbers; call it when the whole page is settled.
+    """Draw as `draw_contact` does, and return what writes numbers and names; call it when the whole page is settled.
 
     The setting is that of the result alone if there is none for several.
     """
     state, problem, units = result.boundary, result.problem, units_of(result.contact)
     if state is None or problem is None:
         raise ValueError("the result of a condensed problem has no boundary to draw")
-    loops = _draw_body(axes, state)
-    fans = [fan for fan in _fans(result, state) if zone in (None, fan.zone)]
+    bodies = _draw_bodies(axes, problem, state)
+    loops = [loop for own in bodies for loop in own]
     setting = setting or setting_of([result], zone)
     window, size, part = setting.window, setting.size, setting.part
+    fans = [fan for fan in _fans(result, state) if not part or (zone == fan.zone and _seen(fan, window))]
     reach = size if part else OVERHANG * size
-    grounds = [draw_ground(axes, *surface, 0.025 * size, GREY) for surface in surfaces_of(result, problem, reach)]
-    covered = [np.clip(ground, window.min(axis=0) - reach, window.max(axis=0) + reach) for ground in grounds]
+    surfaces = [*surfaces_of(result, problem, reach)]
+    grounds = [draw_ground(axes, it.points, it.normals, 0.025 * size, GREY) for it in surfaces]
+    covered = [framed(ground, it, window, size) for ground, it in zip(grounds, surfaces, strict=True)]
     symbols = list[Array]()
     if not part:
         displacement = _displacement(state)
         symbols = [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
+        symbols += draw_weights(axes, problem, displacement)
     infinite, scale, length = result.accuracy.infinite, setting.pressure, setting.length
     names, tips = list[Name](), list[Array]()
+    touched = {fan.zone for fan in fans}
     for fan in fans:
         tips.append(fan.feet - length * np.minimum(fan.pressure / scale, 1.0)[:, None] * fan.normals)
         _draw_fan(axes, fan, tips[-1], 0.03 * size)
+        crowded = len(touched) > NUMBERS
+        if not numbers or (crowded and fan.peak < max(other.peak for other in fans)):
+            continue  # numbers of more contacts could not be told apart
         if fan.zone not in infinite:
             text = with_unit(_peak_text(fan, fans, result.accuracy.peak_bar(fan.zone)), plain(units.stress))
+            text = f"{short_label(fan.zone, 24)}: {text}" if crowded else text
             names.append(_label(fan, tips[-1], text, cut=fan.peak > scale * (1 + LEVEL)))
         elif fan.peak == max(other.peak for other in fans if other.zone == fan.zone):
             names.append(_label(fan, tips[-1], "infinite", cut=True))
+    names += [] if part else body_names(problem, bodies, optional=True)
     beyond = [fan.feet + ROOM * (tip - fan.feet) for fan, tip in zip(fans, tips, strict=True)]
     drawn = np.concatenate([window, *beyond, *([] if part else covered), *symbols])
     frame_plan(axes, drawn, units.length)
@@ -210,11 +235,17 @@ def sketch_contact(
 
     def write() -> None:
         with without_glyph_warnings():
-            place_names(axes, names, np.concatenate([*loops, *grounds, *symbols, *map(_inked, fans, tips)]), loops)
+            place_names(axes, names, np.concatenate([*loops, *grounds, *symbols, *map(_inked, fans, tips)]), bodies)
         for text in axes.texts:
             text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6})
 
     return write
+
+
+def framed(ground: Array, surface: Surface, window: Array, size: float) -> Array:
+    """The points (k, 2) of a drawn surface, moved into what is shown of it around a window, two corners (2, 2)."""
+    reach = (WHOLE if surface.body else OVERHANG) * size
+    return np.clip(ground, window[0] - reach, window[1] + reach)
 
 
 def _inked(fan: Fan, tips: Array) -> Array:
@@ -225,16 +256,22 @@ def _inked(fan: Fan, tips: Array) -> Array:
     return (feet + np.linspace(0, 1, 9)[:, None, None] * (ends - feet)).reshape(-1, 2)
 
 
-def _draw_body(axes: Axes, state: BoundaryState) -> list[Array]:
-    """Draw the deformed body, and its undeformed outline where the two differ visibly; return loops (j, 2)."""
+def _draw_bodies(axes: Axes, problem: Problem, state: BoundaryState) -> list[list[Array]]:
+    """Draw the deformed bodies, and undeformed outlines where they differ visibly; return loops (j, 2) of each."""
     before, after = _curves(state)
-    outline = outline_of(state, after)
-    add_path(axes, outline, facecolor=BODY, edgecolor="none", zorder=0)
-    add_path(axes, outline, facecolor="none", edgecolor=BLACK, linewidth=1.8, zorder=3)
+    draw_outlines(axes, problem, state, after)
     if float(np.abs(after - before).max()) > VISIBLE * float(np.ptp(after.reshape(-1, 2), axis=0).max()):
         undeformed = outline_of(state, before)
         add_path(axes, undeformed, facecolor="none", edgecolor=GREY, linewidth=0.9, linestyle="dashed")
-    return [loop.reshape(-1, 2) for loop in loops_of(state, after)]
+    return [[loop.reshape(-1, 2) for loop in loops] for loops in bodies_of(problem, state, after)]
+
+
+def draw_outlines(axes: Axes, problem: Problem, state: BoundaryState, curves: Array) -> None:
+    """Draw each elastic body from curves (m, c, 2) of its elements."""
+    for loops, color in zip(bodies_of(problem, state, curves), fills(problem), strict=True):
+        outline = _path(loops)
+        add_path(axes, outline, facecolor=color, edgecolor="none", zorder=0)
+        add_path(axes, outline, facecolor="none", edgecolor=BLACK, linewidth=1.8, zorder=3)
 
 
 def _curves(state: BoundaryState) -> tuple[Array, Array]:
@@ -281,11 +318,21 @@ def fan_scale(fans: Sequence[Fan]) -> float:
     return min(max(fan.peak for fan in fans), CUT * max(fan.mean for fan in fans))
 
 
-def _nearest(fans: Sequence[Fan], zone: str, size: float) -> Array:
-    """Deformed points (k, 2) of the contact of a zone, or of that with the largest pressure if others are far away."""
-    own = [fan for fan in fans if fan.zone == zone]
-    feet = np.concatenate([fan.feet for fan in own])
-    return feet if np.ptp(feet, axis=0).max() < CLOSE * size else max(own, key=lambda fan: fan.peak).feet
+def _region(fans: Sequence[Fan]) -> Array:
+    """Deformed points (k, 2) of the fan of the largest pressure, with those that are not far away beside its extent."""
+    feet = max(fans, key=lambda fan: fan.peak).feet
+    others = [fan.feet for fan in fans if not (fan.feet[0] == feet[0]).all()]
+    while near := [
+        other for other in others if KDTree(feet).query(other)[0].min() <= APART * np.ptp(feet, axis=0).max()
+    ]:
+        feet = np.concatenate([feet, *near])
+        others = [other for other in others if not any(other is one for one in near)]
+    return feet
+
+
+def _seen(fan: Fan, window: Array) -> bool:
+    """Whether a window, two corners (2, 2), shows some of a fan."""
+    return bool(((fan.feet >= window[0]) & (fan.feet <= window[1])).all(axis=1).any())
 
 
 def _around(feet: Array) -> Array:
@@ -309,6 +356,7 @@ def _label(fan: Fan, tips: Array, text: str, *, cut: bool) -> Name:
         color=BLACK,
         anchors=np.tile(tips[at], (len(turns), 1)),
         directions=directions,
+        named=tips,
     )
 
 
@@ -327,11 +375,22 @@ def body_extent(state: BoundaryState) -> tuple[float, float]:
 
 def outline_of(state: BoundaryState, curves: Array) -> Path:
     """Join curves (m, c, 2) to one path of closed loops; holes run the other way round and so stay empty."""
-    loops = (np.vstack([loop[:, :-1].reshape(-1, 2), loop[:1, 0]]) for loop in loops_of(state, curves))
-    return Path.make_compound_path(*(Path(loop, closed=True) for loop in loops))
+    return _path(_loops_of(state, curves))
 
 
-def loops_of(state: BoundaryState, curves: Array) -> list[Array]:
+def _path(loops: Sequence[Array]) -> Path:
+    """Join loops of curves (j, c, 2) to one path."""
+    lines = (np.vstack([loop[:, :-1].reshape(-1, 2), loop[:1, 0]]) for loop in loops)
+    return Path.make_compound_path(*(Path(line, closed=True) for line in lines))
+
+
+def bodies_of(problem: Problem, state: BoundaryState, curves: Array) -> list[list[Array]]:
+    """Loops of curves (j, c, 2) of each elastic body."""
+    loops, counts = iter(_loops_of(state, curves)), [len(part.loops) for part in problem.parts]
+    return [list(islice(loops, count)) for count in counts]
+
+
+def _loops_of(state: BoundaryState, curves: Array) -> list[Array]:
     """Split curves (m, c, 2) where one loop of elements ends and the next begins."""
     first, breaks = 0, list[int]()
     for element, end in enumerate(state.points[:, 2]):

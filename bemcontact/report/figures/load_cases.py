@@ -1,6 +1,6 @@
 """The picture of all load cases: contact and stress of each, their pressures and the envelope of these."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -32,14 +32,15 @@ from bemcontact.report.figures.page import (
     wrapped,
 )
 from bemcontact.report.figures.result import (
-    PANELS,
     ROW,
     WIDE,
     entitle,
     of_zone,
+    panels_of,
     show_around,
 )
 from bemcontact.report.figures.stress import SAME, add_bar, color_scale, fill_body
+from bemcontact.report.figures.symbols import settle
 from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import case_verdicts
 
@@ -59,7 +60,7 @@ ENVELOPE = "largest of all"
 def figure_of_cases(cases: CaseResults, stress: StressMeasure = StressMeasure.VON_MISES) -> Figure:
     """Compose a page with contact and stress of each load case, and the pressures of all with their envelope."""
     shown, first = shown_cases(cases), next(iter(cases.results.values()))
-    panels = panels_of(first)
+    panels = panels_of([*cases.results.values()])
     columns, rows, height = grid_of(shown, first, INCHES)
     bodies = 2 * [rows * height] if rows else []
     heights = [*bodies, ROW * len(panels)]
@@ -77,12 +78,6 @@ def figure_of_cases(cases: CaseResults, stress: StressMeasure = StressMeasure.VO
 def places_of(figure: Figure | SubFigure, shown: Sequence[str], rows: int, columns: int) -> list[Axes]:
     """Axes for each load case, row by row."""
     return [figure.add_subplot(rows, columns, place) for place in range(1, len(shown) + 1)]
-
-
-def panels_of(result: Result) -> tuple[str | None, ...]:
-    """Zones that have panels of their own; None alone where all zones share one."""
-    zones = result.contact.zone_names
-    return tuple(zones) if 1 < len(zones) <= PANELS else (None,)
 
 
 def shown_cases(cases: CaseResults) -> list[str]:
@@ -113,11 +108,14 @@ def draw_case_contacts(places: Sequence[Axes], cases: CaseResults, shown: Sequen
     """
     results = [cases.results[name] for name in shown]
     zone = _close_zone(results)
-    setting = setting_of(results, zone)
+    setting, writers = setting_of(results, zone), list[Callable[[], None]]()
     for axes, name, result in zip(places, shown, results, strict=True):
         axes.set_title(f"{short_label(name, 30)}\n{_peak(result)}", loc="left", fontsize=9)
-        sketch_contact(axes, result, zone, setting)  # there is no room for more numbers
+        writers.append(sketch_contact(axes, result, zone, setting, numbers=False))  # there is no room for more
     _align(places, framed=zone is not None)
+    settle(places[0])
+    for write in writers:
+        write()
 
 
 def draw_case_stresses(places: Sequence[Axes], cases: CaseResults, shown: Sequence[str], stress: StressMeasure) -> None:
@@ -142,7 +140,7 @@ def draw_case_stresses(places: Sequence[Axes], cases: CaseResults, shown: Sequen
     _align(places, framed=False)
     figure = places[0].get_figure(root=False)
     assert figure is not None
-    title = f"deformed shapes, {in_words(factor)}\n{'; '.join(marked)}"
+    title = f"deformed shapes, {in_words(factor, results)}\n{'; '.join(marked)}"
     figure.suptitle(title, x=0.01, ha="left", fontsize=10)
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
+from matplotlib.axis import XAxis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
@@ -38,6 +39,8 @@ BLACK, BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = (
     "#222222", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"
 )  # fmt: skip
 GREY, BODY = "#7d838c", "#e8ecf2"
+BODIES = (BODY, "#f5ecd7", "#dfeee4", "#efe3ee", "#f6e2dc", "#dcebf3")
+"""Fills of several bodies, in turn."""
 
 COLOURS = {
     FormulationName.QP1: VERMILION,
@@ -113,9 +116,8 @@ def labeled(quantity: str, unit: str) -> str:
     return f"{quantity} [{plain(unit)}]" if unit else quantity
 
 
-def round_ticks(most: int) -> MaxNLocator:
-    """Place at most so many intervals between ticks, with long labels in mind, at round numbers."""
-    return MaxNLocator(most, steps=[1, 2, 2.5, 5, 10])
+LETTER = 0.1
+"""Inches of a digit of a tick label."""
 
 
 def add_path(axes: Axes, path: MplPath, **style: Any) -> None:
@@ -124,16 +126,41 @@ def add_path(axes: Axes, path: MplPath, **style: Any) -> None:
     axes.update_datalim(path.vertices)
 
 
-def frame_plan(axes: Axes, drawn: Array, unit: str) -> None:
+class RoundTicks(MaxNLocator):
+    """Ticks at round numbers, of a horizontal axis only as many as there is room for their labels."""
+
+    def __init__(self, most: int) -> None:
+        """Place at most so many intervals between ticks."""
+        self.most = most
+        super().__init__(most, steps=[1, 2, 2.5, 5, 10])
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        """Round numbers between two limits, and one beyond each."""
+        ticks, axis = np.array([vmin, vmax]), self.axis
+        page = axis.get_figure(root=True) if isinstance(axis, XAxis) else None
+        for count in range(self.most, 0, -1):
+            self.set_params(nbins=count)
+            ticks = np.asarray(super().tick_values(vmin, vmax))
+            if not isinstance(axis, XAxis) or page is None or vmin == vmax:
+                break
+            shown = ticks[(ticks >= min(vmin, vmax)) & (ticks <= max(vmin, vmax))]
+            letters = [len(text) + 1 for text in axis.get_major_formatter().format_ticks(shown.tolist())]
+            apart = axis.axes.bbox.width * (shown[1] - shown[0]) / (vmax - vmin) if len(shown) > 1 else np.inf
+            if LETTER * page.dpi * max(letters, default=0) <= apart:
+                break
+        return ticks
+
+
+def frame_plan(axes: Axes, drawn: Array, unit: str, margin: float = 0.06) -> None:
     """Set limits, aspect and labels of a plan so that it shows all drawn points (k, 2) with a margin."""
     low, high = drawn.min(axis=0), drawn.max(axis=0)
     longest = float((high - low).max())
-    air = longest * (0.12 if (high - low).min() < longest / 3 else 0.06)
+    air = margin * longest
     axes.set_xlim(low[0] - air, high[0] + air)
     axes.set_ylim(low[1] - air, high[1] + air)
     axes.set_aspect("equal")
     for axis, extent in zip((axes.xaxis, axes.yaxis), high - low, strict=True):
-        axis.set_major_locator(round_ticks(max(2, round(6 * min(1.0, 1.5 * extent / longest)))))
+        axis.set_major_locator(RoundTicks(max(2, round(6 * min(1.0, 1.5 * extent / longest)))))
         axis.set_major_formatter(ScalarFormatter(useOffset=False))
     axes.set_xlabel(labeled("x", unit))
     axes.set_ylabel(labeled("y", unit))
@@ -165,6 +192,7 @@ def cut_off(axes: Axes, top: float, zones: Sequence[str]) -> None:
     axes.set_title(f"infinite in {where}: cut off", loc="right", pad=16, fontsize=8.5, color=BLACK)
 
 
+AROUND = "only around the contact"
 SEAM = 1e-9
 """Round-off of a perimeter, relative to it."""
 PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
@@ -219,14 +247,19 @@ def distance_label(contact: CondensedContact, pieces: Sequence[Piece]) -> str:
     first = pieces[0].index[int(np.argmin(contact.arc_position[pieces[0].index]))]
     begins = len(pieces) == 1 and float(contact.arc_position[first]) == 0.0
     x, y = contact.points[first].tolist()
-    begin = f" from {vector((x, y), scale=float(abs(contact.points).max()))}" * begins
+    begin = f"\nfrom {vector((x, y), scale=float(abs(contact.points).max()))}" * begins
     rounds = (float(contact.run_length[piece.run]) for piece in pieces)
     beyond = [length for piece, length in zip(pieces, rounds, strict=True) if piece.arc[-1] > length * (1 + SEAM)]
-    label = labeled(f"distance{begin} along the contact zone", unit)
+    label = labeled("distance along the contact zone", unit) + begin
     if not beyond:
         return label
     around = plain(with_unit(number(beyond[0]), unit))
     return f"{label}\nfrom {around} on it goes round again"
+
+
+def only_around(label: str) -> str:
+    """Add to the label of an axis that only the part around the contact is shown."""
+    return f"{label}{'; ' if label.endswith(')') else chr(10)}{AROUND}"
 
 
 def _once_round(contact: CondensedContact, index: IntArray, touching: BoolArray) -> tuple[IntArray, Array]:

@@ -16,13 +16,13 @@ from bemcontact.report.figures.load_cases import (
     draw_case_stresses,
     figure_of_cases,
     grid_of,
-    panels_of,
     places_of,
     shown_cases,
 )
 from bemcontact.report.figures.mesh_study import plan_of
 from bemcontact.report.figures.page import new_page
-from bemcontact.report.figures.result import draw_gap, draw_pressure, figure_of_result
+from bemcontact.report.figures.result import BAR, PANELS, draw_gap, draw_pressure, figure_of_result, panels_of
+from bemcontact.report.figures.zone_bars import closed_zones, draw_zone_bars
 
 WIDTH = 5.4
 """Inches of a picture on a page: its text can be read on a telephone, and two stand side by side."""
@@ -39,7 +39,8 @@ def pictures_of(results: Result | CaseResults, stress: StressMeasure = StressMea
     """Make the pictures for the page of a result or of all load cases, by name.
 
     Names are "problem", "contact" or "contacts", and "deformed" (if a body is known), and for each zone "pressure-1",
-    and of a result "gap-1", and "contact-1" if it needs a close-up; "pressure" if there are too many zones.
+    and of a result "gap-1", and "contact-1" if it needs a close-up. Of many zones those with the largest forces have
+    such pictures, and "forces" shows all of a result.
     """
     first = results if isinstance(results, Result) else next(iter(results.results.values()))
     figures, near = dict[str, Figure](), [] if isinstance(results, CaseResults) else close_ups(results)
@@ -55,7 +56,12 @@ def pictures_of(results: Result | CaseResults, stress: StressMeasure = StressMea
         figures["deformed"], axes = _page(first)
         draw_deformed(axes, first, stress)
     zones = [*first.contact.zone_names]
-    for zone in panels_of(first):
+    if isinstance(results, Result) and len(zones) > PANELS:
+        figures["forces"] = new_page(DOUBLE, 0.9 + BAR * len(closed_zones(first)))
+        peaks, forces = figures["forces"].subplots(1, 2, sharey=True)
+        draw_zone_bars(peaks, results, "peak")
+        draw_zone_bars(forces, results, "force")
+    for zone in panels_of([results] if isinstance(results, Result) else [*results.results.values()]):
         number = f"-{zones.index(zone or zones[0]) + 1}" if zone or len(zones) == 1 else ""
         if (zone or zones[0]) in near and number:
             figures[f"contact{number}"], axes = _page()

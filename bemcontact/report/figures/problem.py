@@ -1,7 +1,8 @@
 """The picture of a problem: geometry, mesh, conditions, loads, rigid surfaces and tools."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from itertools import cycle
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,6 +10,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.path import Path
+from scipy.spatial import KDTree
 
 from bemcontact.analysis.check import contours
 from bemcontact.arrays import Array
@@ -29,7 +31,7 @@ from bemcontact.problem import (
 from bemcontact.report.figures.page import (
     BLACK,
     BLUE,
-    BODY,
+    BODIES,
     GREEN,
     GREY,
     PURPLE,
@@ -53,7 +55,6 @@ from bemcontact.report.figures.symbols import (
 )
 from bemcontact.report.formatting import (
     NEGLIGIBLE,
-    acting_volume_loads,
     prescribed,
     tool_in_words,
     volume_loads,
@@ -70,12 +71,17 @@ FREE = Condition(traction=AxisFields(x=Field(constant=0.0)))
 """Condition of an edge without a stated one."""
 FLUSH = 1e-6
 """Gap over the body's size between a plane and an edge that lies in it."""
+MANY = 4
+"""Number of elastic bodies up to which each edge has its name; of more, edges with room for it have one."""
 SHORT = 0.2
 """Length over the body's size of an edge that has too little room for its name; it may stand beyond the ends."""
 
 
 def figure_of_problem(problem: Problem, mesh: Mesh, note: str = "") -> Figure:
     """Compose a page with geometry, mesh, conditions and rigid surfaces, and a note below the title if given."""
+    if problem.load_cases and not any(problem.factors().values()):
+        without = f"load cases are not drawn; --case draws one of {', '.join(problem.case_names)}"
+        note = "\n".join(filter(None, [note, without]))
     low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
     width, height = (high - low) / (high - low).max()
     inches = 3.6 + 7.0 * max(width, 0.5)
@@ -88,21 +94,28 @@ def figure_of_problem(problem: Problem, mesh: Mesh, note: str = "") -> Figure:
 
 
 def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
-    """Draw the body with its mesh, conditions and rigid surfaces; each edge has its name and conditions."""
+    """Draw the bodies with their mesh, conditions and rigid surfaces; each edge has its name and conditions.
+
+    Of many bodies each has its name, and only edges with room for it have theirs.
+    """
     _fill_body(axes, problem)
     _draw_mesh(axes, problem, mesh)
     outline = [edge.points(np.linspace(0, 1, 60)) for edge in problem.edges]
     symbols = [*draw_supports(axes, problem), *draw_loads(axes, problem), *_draw_surfaces(axes, problem, mesh)]
+    symbols += draw_weights(axes, problem) if problem.several else []
     tools = [*draw_tools(axes, problem)]
     drawn = np.concatenate([*outline, *symbols, *(covered for covered, _ in tools)])
-    frame_plan(axes, drawn, problem.units.length)
+    slender = np.ptp(drawn, axis=0).min() < np.ptp(drawn, axis=0).max() / 3
+    frame_plan(axes, drawn, problem.units.length, margin=0.12 if slender else 0.06)
     _draw_legend(axes, problem)
-    names = [_name(problem, edge) for edge in problem.edges]
-    names += [*(name for _, name in tools), *_draw_rotation(axes, problem)]
+    crowded = len(problem.parts) > MANY
+    names = [*(name for _, name in tools), *_draw_rotation(axes, problem)]
+    edges = [_name(problem, edge, i, crowded) for i, part in enumerate(problem.parts) for edge in part.edges]
+    names = [*body_names(problem, polygons_of(problem)), *names, *edges] if crowded else [*edges, *names]
     settle(axes)
     with without_glyph_warnings():
-        taken = place_names(axes, names, drawn, _polygons(problem))
-        if (weight := _weight(problem)).any():
+        taken = place_names(axes, names, drawn, polygons_of(problem))
+        if not problem.several and (weight := _weights(problem)[0]).any():
             place_arrow(axes, "$g$", weight, drawn, taken)
 
 
@@ -127,14 +140,36 @@ def _acting(problem: Problem, edge: str) -> Iterator[tuple[float, Condition]]:
             yield factor, problem.load_cases[case].conditions[edge]
 
 
-def _weight(problem: Problem) -> Array:
-    """The weight (2,) of a unit of volume, with the load cases that act."""
-    pulls = [
-        factor * loads.gravity.density * np.array(loads.gravity.acceleration)
-        for factor, loads in acting_volume_loads(problem)
-        if loads.gravity
+def _weights(problem: Problem) -> list[Array]:
+    """The weight (2,) of a unit of volume of each elastic body, with the load cases that act."""
+    factors = [1.0, *(problem.factors().get(case, 0.0) for case in problem.load_cases)]
+    return [
+        _total(
+            [
+                factor * loads.gravity.density * np.array(loads.gravity.acceleration)
+                for factor, loads in zip(factors, of_part, strict=True)
+                if loads.gravity
+            ],
+            np.zeros(2),
+        )
+        for of_part in zip(*problem.volume_loads, strict=True)
     ]
-    return _total(pulls, np.zeros(2))
+
+
+def draw_weights(axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like) -> Iterator[Array]:
+    """Draw an arrow from the middle of each elastic body along its weight, all to one scale; yield what they cover."""
+    weights = _weights(problem)
+    largest = max(float(np.hypot(*weight)) for weight in weights)
+    for loops, weight in zip(polygons_of(problem), weights, strict=True):
+        if weight.any():
+            middle = (loops[0].min(axis=0) + loops[0].max(axis=0))[None] / 2
+            arrow = 0.1 * problem.size / largest * weight[None]
+            tail = middle + displacement(middle) - arrow / 2
+            yield draw_arrows(axes, tail, arrow, GREEN)
+            behind = -8 * weight / np.hypot(*weight)
+            axes.annotate(
+                "$g$", tail[0], behind, textcoords="offset points", ha="center", va="center", color=GREEN, zorder=6
+            )
 
 
 def _total(parts: list[Array], none: Array) -> Array:
@@ -144,14 +179,45 @@ def _total(parts: list[Array], none: Array) -> Array:
 
 
 def _fill_body(axes: Axes, problem: Problem) -> None:
-    """Fill the body; holes run the other way round and so stay empty."""
-    path = Path.make_compound_path(*(Path(loop, closed=True) for loop in _polygons(problem)))
-    add_path(axes, path, facecolor=BODY, edgecolor="none", zorder=0)
+    """Fill the bodies; holes run the other way round and so stay empty."""
+    for loops, color in zip(polygons_of(problem), fills(problem), strict=True):
+        path = Path.make_compound_path(*(Path(loop, closed=True) for loop in loops))
+        add_path(axes, path, facecolor=color, edgecolor="none", zorder=0)
 
 
-def _polygons(problem: Problem) -> list[Array]:
-    """Each loop as a fine polygon (j, 2)."""
-    return [np.concatenate([edge.polyline() for edge in loop]) for loop in problem.loops]
+def fills(problem: Problem) -> list[str]:
+    """Color of each elastic body; of more than there are colors, those with edges of the same lengths share one."""
+    if len(problem.parts) <= len(BODIES):
+        return [*BODIES[: len(problem.parts)]]
+    shapes = [tuple(f"{edge.length / problem.size:.4f}" for edge in part.edges) for part in problem.parts]
+    colors = dict(zip(dict.fromkeys(shapes), cycle(BODIES), strict=False))
+    return [colors[shape] for shape in shapes]
+
+
+def body_names(problem: Problem, polygons: Sequence[Sequence[Array]], *, optional: bool = False) -> Iterator[Name]:
+    """Names of several elastic bodies, to be placed in the bodies, from the closed polygons (j, 2) of each."""
+    if not problem.several:
+        return
+    for body, (part, loops) in enumerate(zip(problem.parts, polygons, strict=True)):
+        low, high = loops[0].min(axis=0), loops[0].max(axis=0)
+        shares = np.stack(np.meshgrid(*2 * [np.linspace(0.02, 0.98, 25)]), axis=-1).reshape(-1, 2)
+        places = low + shares * (high - low)
+        inside = np.logical_xor.reduce([Path(loop).contains_points(places) for loop in loops])
+        away = KDTree(np.concatenate(loops)).query(places)[0]
+        order = [at for at in np.argsort(-away, kind="stable") if inside[at]]
+        yield Name(
+            text=wrapped(part.name, 20),
+            color=BLACK,
+            anchors=places[order],
+            directions=np.zeros((len(order), 2)),
+            body=body,
+            optional=optional,
+        )
+
+
+def polygons_of(problem: Problem) -> list[list[Array]]:
+    """Each loop of each elastic body as a fine polygon (j, 2)."""
+    return [[np.concatenate([edge.polyline() for edge in loop]) for loop in part.loops] for part in problem.parts]
 
 
 def _draw_mesh(axes: Axes, problem: Problem, mesh: Mesh) -> None:
@@ -230,14 +296,16 @@ def _draw_rotation(axes: Axes, problem: Problem) -> Iterator[Name]:
 
 def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
     """Draw the rigid surfaces opposite the body with their normals."""
-    size = problem.size
+    size, drawn = problem.size, set[str]()
     for name, zone in problem.zones.items():
+        body = zone.surface.body if isinstance(zone.surface, BodySurface) else name
         if isinstance(zone.surface, DeflectedContour) or (
             isinstance(zone.surface, BodySurface) and zone.surface.elastic
         ):
             continue
-        points, normals = surface_line(problem, name, 0.12 * size)
-        yield draw_ground(axes, points, normals, 0.03 * size, GREY)
+        for points, normals in surface_lines(problem, name, 0.12 * size) if body not in drawn else ():
+            yield draw_ground(axes, points, normals, 0.03 * size, GREY)
+        drawn.add(body)
         facing = _facing(problem, name)
         gap, normal = zone.surface.closest(facing)
         at = _nearest(gap, size)
@@ -269,18 +337,25 @@ def _nearest(gap: Array, size: float) -> int:
     return int(nearest[len(nearest) // 2])
 
 
+def surface_lines(problem: Problem, zone: str, overhang: float) -> list[tuple[Array, Array]]:
+    """The line of a rigid surface as of `surface_line`, or each loop of a rigid body."""
+    surface, shares = problem.zones[zone].surface, np.linspace(0, 1, 91)
+    if not isinstance(surface, BodySurface):
+        return [surface_line(problem, zone, overhang)]
+    return [
+        (np.concatenate([it.points(shares) for it in loop]), np.concatenate([it.normals(shares) for it in loop]))
+        for loop in surface.loops
+    ]
+
+
 def surface_line(problem: Problem, zone: str, overhang: float) -> tuple[Array, Array]:
     """Points (k, 2) of the rigid surface of a zone, in order, with an overhang at its ends, and unit normals (k, 2).
 
     A plane that is the face of a punch has no overhang: it ends where the boundary beside the zone lies in it.
     """
     surface, facing, size = problem.zones[zone].surface, _facing(problem, zone), problem.size
-    assert not isinstance(surface, DeflectedContour)
+    assert not isinstance(surface, DeflectedContour | BodySurface)
     match surface:
-        case BodySurface():
-            lines = [edge.points(np.linspace(0, 1, 91)) for loop in surface.loops for edge in loop]
-            outward = [edge.normals(np.linspace(0, 1, 91)) for loop in surface.loops for edge in loop]
-            return np.concatenate(lines), np.concatenate(outward)
         case Plane():
             normal = np.array(surface.unit_normal)
             along = np.array([normal[1], -normal[0]])
@@ -325,19 +400,24 @@ def _traction(problem: Problem, edge: str, points: Array, normals: Array) -> Arr
     return _total(acting, np.zeros_like(points))
 
 
-def _name(problem: Problem, edge: Edge) -> Name:
-    """Prepare the text at an edge: its name, and what is prescribed there."""
+def _name(problem: Problem, edge: Edge, body: int, crowded: bool) -> Name:
+    """Prepare the text at an edge of a body: its name, and what is prescribed there; shorter among many bodies."""
+    lines = [*prescribed(problem, edge)]
+    contacts = [line for line in lines if line.startswith("may touch")]
+    if len(contacts) > 2:
+        lines = [f"may touch in {len(contacts)} contacts", *(line for line in lines if line not in contacts)]
+    name = edge.name.removeprefix(f"{problem.part_of(edge.name)}/") if crowded else edge.name
     fractions = np.array([0.5, 0.4, 0.6, 0.25, 0.75, 0.12, 0.88])
     anchors, outward = edge.points(fractions), edge.normals(fractions)
     ends = np.array([0.02, 0.98] if edge.length < SHORT * problem.size else [])
     slanted = (edge.normals(ends) + edge.directions(ends) * np.sign(ends - 0.5)[:, None]) / np.sqrt(2)
     return Name(
-        text="\n".join(
-            [wrapped(edge.name, 28), *(_symbols(short_label(line, 40)) for line in prescribed(problem, edge))]
-        ),
+        text="\n".join([wrapped(name, 28), *(_symbols(short_label(line, 40)) for line in lines)]),
         color=ROLES[role(problem, edge.name)],
         anchors=np.concatenate([anchors, anchors, edge.points(ends)]),
         directions=np.concatenate([-outward, outward, slanted]),
+        body=body,
+        optional=crowded,
     )
 
 

@@ -1,11 +1,12 @@
 """The picture of a result: contact, deformed shape, pressure and gap."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from textwrap import wrap
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.gridspec import GridSpecBase
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array, BoolArray
@@ -21,32 +22,41 @@ from bemcontact.report.figures.page import (
     GREY,
     QUALITY_COLOURS,
     Piece,
+    RoundTicks,
     ceiling,
     cut_off,
     distance_label,
     labeled,
     new_page,
+    only_around,
     pieces_of,
     plain,
-    round_ticks,
     short_label,
     wrapped,
 )
 from bemcontact.report.figures.symbols import settle
+from bemcontact.report.figures.zone_bars import closed_zones, draw_zone_bars
 from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import Verdict, in_short, overall, result_verdicts
 
-WIDE = 1.6
-"""Width over height of a body from which its pictures stand one above the other."""
+WIDE, STACKED = 1.6, 2.4
+"""Width over height from which a body is wide, and from which its pictures stand one above the other."""
 ROW = 3.2
 """Inches of a row of curves."""
-PANELS = 4
-"""Most contact zones that have panels of their own."""
+PANELS, LARGEST = 4, 3
+"""Most contact zones of which each has panels of its own, and how many of more zones have."""
+BAR = 0.22
+"""Inches of a bar of one of many contacts."""
+TALLEST = 6.2
+"""Most inches of a picture of the bodies."""
+BESIDE = np.array([1.0, 2.0])
+"""Inches beside the pictures of contact and deformed shape, for labels and the scale of colors."""
 NARROW = 0.15
 """Extent of the contact over that of its zone below which only the part around it is shown."""
 WIDTHS = 1.0
 """Widths of the contact that are shown to either side of it, where it is small beside the zone."""
-AROUND = "only around the contact"
+FEW = 40
+"""Points of a piece up to which their dots have full size."""
 CLOSED = 1e-9
 """Gap over the displacement scale that is round-off."""
 
@@ -54,43 +64,79 @@ CLOSED = 1e-9
 def figure_of_result(result: Result, stress: StressMeasure = StressMeasure.VON_MISES) -> Figure:
     """Compose a page with contact, stress on the deformed shape, where the body is known, and pressure and gap.
 
-    Each of a few zones has a row of its own, with a close-up if its contact is small beside the body.
+    Each of a few zones has a row of its own, with a close-up if its contact is small beside the body. Of many zones
+    those with the largest forces have one; bars show the largest pressure and the force of each.
     """
     state, zones = result.boundary, result.contact.zone_names
-    rows, near = zones if 1 < len(zones) <= PANELS else (None,), close_ups(result)
-    columns = 3 if near and (rows[0] is not None or len(zones) == 1) else 2
-    inches = 14 if columns == 3 else 12
-    plans, heights = 0, list[float]()
-    if state is not None:
-        width, height = body_extent(state)
-        plans = 2 if width > WIDE * height else 1
-        heights = plans * [float(np.clip((1.0 if plans == 2 else 0.45) * inches * height / width + 1.0, 2.2, 4.6))]
-    figure = new_page(inches, sum(heights) + 0.8 + ROW * len(rows))
-    grid = figure.add_gridspec(plans + len(rows), 6, height_ratios=[*heights, *len(rows) * [ROW]])
-    contact = figure.add_subplot(grid[0, :] if plans == 2 else grid[0, :3]) if plans else None
-    closer = dict[str, Axes]()
-    for row, zone in enumerate(rows, plans):
-        name = zones[0] if zone is None else zone
-        if columns == 3 and name in near:
-            closer[name] = figure.add_subplot(grid[row, :2])
+    rows, near = panels_of([result]), close_ups(result)
+    names = [zones[0] if zone is None and len(zones) == 1 else zone for zone in rows]
+    columns = 3 if any(name in near for name in names) else 2
+    inches, bars = 14 if columns == 3 else 12, len(zones) > PANELS
+    wide = state is not None and body_extent(state)[0] > STACKED * body_extent(state)[1]
+    plans, below = (0 if state is None else 2 if wide else 1), ([0.9 + BAR * len(closed_zones(result))] if bars else [])
+    figure = new_page(inches, ROW)
+    grid = figure.add_gridspec(plans + len(below) + len(rows), 6)
+    title = f"{wrapped(result.contact.name, 6 * inches)}: {result.solution.formulation}"
+    heights, writers = list[float](), list[Callable[[], None]]()
+    if plans:
+        side = None if wide else grid[0, :].subgridspec(1, 3)
+        places = [grid[0, :], grid[1, :]] if side is None else [side[0, 0], side[0, 1]]
+        contact, shape = map(figure.add_subplot, places)
+        contact.set_title("contact pressure, displacements to scale", loc="left", fontsize=10)
+        writers.append(sketch_contact(contact, result))
+        draw_deformed(shape, result, stress)
+        heights, inches = _fit([contact, shape], side, inches, 11.0 if columns == 3 else 9.5)
+    if bars:
+        peaks = figure.add_subplot(grid[plans, :3])
+        draw_zone_bars(peaks, result, "peak")
+        draw_zone_bars(figure.add_subplot(grid[plans, 3:], sharey=peaks), result, "force")
+    for row, (zone, name) in enumerate(zip(rows, names, strict=True), plans + len(below)):
+        if columns == 3 and name is not None and name in near:
+            closer = figure.add_subplot(grid[row, :2])
+            closer.set_title(f"{short_label(name, 30)}: close-up", loc="left", fontsize=10)
+            writers.append(sketch_contact(closer, result, name, stress=stress))
         thirds = (slice(2, 4), slice(4, 6)) if columns == 3 else (slice(0, 3), slice(3, 6))
         pressure = figure.add_subplot(grid[row, thirds[0]])
         draw_pressure(pressure, result, zone)
         draw_gap(figure.add_subplot(grid[row, thirds[1]], sharex=pressure), result, zone)
-    if plans:
-        draw_deformed(figure.add_subplot(grid[1, :] if plans == 2 else grid[0, 3:]), result, stress)
-    title = f"{wrapped(result.contact.name, 6 * inches)}: {result.solution.formulation}"
-    entitle(figure, title, result_verdicts(result), 9 * inches)
-    if contact is not None:
-        contact.set_title("contact pressure, displacements to scale", loc="left", fontsize=10)
-        for name, axes in closer.items():
-            axes.set_title(f"{short_label(name, 30)}: close-up", loc="left", fontsize=10)
-        writers = [sketch_contact(contact, result)]
-        writers += [sketch_contact(axes, result, name, stress=stress) for name, axes in closer.items()]
-        settle(contact)
-        for write in writers:
-            write()  # the last ones: labels are placed on the page as it is laid out
+    heights += [*below, *len(rows) * [ROW]]
+    grid.set_height_ratios(heights)
+    figure.set_size_inches(inches, sum(heights) + 0.8)
+    entitle(figure, title, result_verdicts(result), int(9 * inches))
+    if writers:
+        settle(figure.axes[0])
+    for write in writers:
+        write()  # the last ones: labels are placed on the page as it is laid out
     return figure
+
+
+def panels_of(results: Sequence[Result]) -> list[str | None]:
+    """Zones that have panels of their own: each of a few, of many those with the largest forces; None for all."""
+    zones = results[0].contact.zone_names
+    if len(zones) <= PANELS:
+        return [*zones] if len(zones) > 1 else [None]
+    forces = {zone: max(float(np.hypot(*result.footprint.forces[zone])) for result in results) for zone in zones}
+    most = sorted((zone for zone in zones if forces[zone] > 0), key=lambda zone: -forces[zone])[:LARGEST]
+    return [zone for zone in zones if zone in most] or [None]
+
+
+def _fit(plans: Sequence[Axes], side: GridSpecBase | None, inches: float, least: float) -> tuple[list[float], float]:
+    """Inches of the rows of two plans, and of the page, at which what they show fills them.
+
+    Plans one above the other get the same horizontal limits; those `side` by side get widths, and the page may be less
+    wide, down to the `least`.
+    """
+    spans = np.array([[np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())] for axes in plans])
+    if side is None:
+        low, high = min(axes.get_xlim()[0] for axes in plans), max(axes.get_xlim()[1] for axes in plans)
+        for axes in plans:
+            axes.set_xlim(low, high)
+        return [float(np.clip((inches - 2.4) * up / (high - low) + 1.3, 1.9, TALLEST)) for up in spans[:, 1]], inches
+    over = spans[:, 0] / spans[:, 1]
+    row = float(np.clip((inches - BESIDE.sum()) / over.sum() + 1.3, 2.6, TALLEST))
+    widths = (row - 1.3) * over + BESIDE
+    side.set_width_ratios([*widths, max(least - widths.sum(), 0.01)])
+    return [row], float(np.clip(widths.sum(), least, inches))
 
 
 def entitle(figure: Figure, title: str, of_it: Sequence[Verdict], columns: int) -> None:
@@ -159,6 +205,7 @@ def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None) -> 
     for rank, piece in enumerate(pieces):
         s, along, color = piece.arc, values[piece.index], piece.color
         width = 1.5 * (2 - (rank + 1) / len(pieces))
+        dot = 8 * width**2 * min(1.0, FEW / len(s))
         axes.plot(
             s,
             along,
@@ -166,23 +213,23 @@ def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None) -> 
             linewidth=width,
             linestyle="dashed" if rank else "solid",
             zorder=2,
-            label=piece.label,
+            label=piece.label if touching[piece.index].any() else None,
         )
         axes.fill_between(s, along, color=color, alpha=0.12, linewidth=0, zorder=1)
         faces = np.where(touching[piece.index], color, "white")
-        axes.scatter(s, along, s=8 * width**2, c=faces, edgecolors=color, linewidths=1.0, zorder=3)
+        axes.scatter(s, along, s=dot, c=faces, edgecolors=color, linewidths=1.0, zorder=3)
     colors = {contact.zone_names[int(contact.zone[piece.index[0]])]: piece.color for piece in pieces}
     for name, ends in intervals_on(pieces, result):
         axes.hlines(0, *ends, color=colors[name], linewidth=3 + 3 * list(colors)[::-1].index(name), zorder=2)
     axes.set_xlabel(distance_label(contact, pieces))
     axes.spines[["top", "right"]].set_visible(False)
-    axes.xaxis.set_major_locator(round_ticks(7))
+    axes.xaxis.set_major_locator(RoundTicks(7))
     show_around(axes, pieces, [result], values)
     if zone is not None:
         axes.set_title(
             short_label(zone, 40), loc="left", fontsize=10, pad=16 if zone in result.accuracy.infinite else 6
         )
-    if len(pieces) > 1:
+    if len(pieces) > 1 and touching[of_zone(contact, zone)].any():
         axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, fontsize=9)
 
 
@@ -200,7 +247,7 @@ def window_around(pieces: Sequence[Piece], intervals: Sequence[tuple[float, floa
     start, end = min(piece.arc[0] for piece in pieces), max(piece.arc[-1] for piece in pieces)
     low = min((begin for begin, _ in intervals), default=start)
     high = max((finish for _, finish in intervals), default=end)
-    if high - low >= NARROW * (end - start):
+    if not 0 < high - low < NARROW * (end - start):
         return None
     air = WIDTHS * (high - low)
     return max(low - air, start), min(high + air, end)
@@ -215,7 +262,7 @@ def show_around(axes: Axes, pieces: Sequence[Piece], results: Sequence[Result], 
         [np.interp(np.linspace(*window, 200), piece.arc, values[piece.index], left=0, right=0) for piece in pieces]
     )
     axes.set(xlim=window, ylim=(-0.05 * shown.max() or None, 1.1 * shown.max() or None))
-    axes.set_xlabel(f"{axes.get_xlabel()}\n{AROUND}")
+    axes.set_xlabel(only_around(axes.get_xlabel()))
 
 
 def _gap(result: Result) -> Array:

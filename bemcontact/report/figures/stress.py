@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation, TriContourSet
 
@@ -15,6 +16,8 @@ from bemcontact.contact.stress import PointKind, TriangulatedBody
 from bemcontact.options import StressMeasure
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.page import BLACK, labeled
+from bemcontact.report.figures.problem import polygons_of
+from bemcontact.report.figures.surfaces import bent
 
 BESIDE = 0.1
 """Distance from an infinite stress over the size of what is shown within which no value sets the scale."""
@@ -96,12 +99,25 @@ def _stresses(
 ) -> tuple[TriangulatedBody, Array, Array, BoolArray, BoolArray]:
     """Triangles, displaced corners (k, 2), stress (k,) there, which of them are shown, and where it is infinite."""
     body = result.triangulated
-    points = body.points + factor * body.displacement
+    points = body.points + factor * body.displacement + _bending(result, body, factor)
     values = body.stress.measured(measure)
     shown = np.ones(len(points), bool)
     if window is not None:
         shown = np.all((points >= window[0]) & (points <= window[1]), axis=1)
     return body, points, values, shown, body.stress.kind == PointKind.SINGULAR
+
+
+def _bending(result: Result, body: TriangulatedBody, factor: float) -> Array:
+    """Displacement (k, 2) that magnifies initial gaps at the points of the bodies, see `bent`."""
+    problem, state, moves = result.problem, result.boundary, np.zeros_like(body.points)
+    if problem is None or state is None or factor == 1 or not problem.contacts:
+        return moves
+    rim = np.array([problem.part_of(name) for name in state.edge_names])[state.edge[body.element]]
+    for part, loops in zip(problem.parts, polygons_of(problem), strict=True):
+        inside = np.logical_xor.reduce([Path(loop).contains_points(body.points) for loop in loops])
+        own = np.append(rim == part.name, inside[len(rim) :])
+        moves[own] = bent(result, part.name, body.points[own], factor)
+    return moves
 
 
 def _seen(points: Array, triangles: IntArray, sizes: Array) -> float:

@@ -29,6 +29,16 @@ class Box(NamedTuple):
     top: float
 
 
+FAR = 30.0
+"""Distance of a name from its anchor, in pixels of the page, from which a line leads to it."""
+SHARES = np.linspace(0.05, 1.0, 20)
+"""Shares of the way from an anchor to a name at which it must not be in another body."""
+BLOCKED = 1000.0
+"""What a way through another body adds to its length, in pixels of the page."""
+CROSSED = 60
+"""Number of drawn points from which free space is better than a place across the outline of a body."""
+FREE_PLACES = 12
+"""Number of nearest places in free space that are compared for a name."""
 COVERED = 1000.0
 """Weight of the share of a label that another one covers, against one drawn point."""
 
@@ -60,12 +70,19 @@ def least_crowded(centers: Array, size: tuple[float, float], taken: Sequence[Box
 
 @dataclass(frozen=True, kw_only=True)
 class Name:
-    """A text, mathematics between dollars, to be placed near one of the anchors (c, 2), in its direction (c, 2)."""
+    """A text, mathematics between dollars, to be placed near one of the anchors (c, 2), in its direction (c, 2).
+
+    One with a number of a body stands in no other body. One that is optional is left out where there is no room. It
+    names what has the points `named` (k, 2), by default the anchors.
+    """
 
     text: str
     color: str
     anchors: Array
     directions: Array
+    body: int | None = None
+    optional: bool = False
+    named: Array | None = None
 
 
 def joined(curves: Array) -> list[Array]:
@@ -109,7 +126,7 @@ def draw_arrows(axes: Axes, tails: Array, vectors: Array, color: str) -> Array:
     axes.quiver(
         *tails.T, *vectors.T, angles="xy", scale_units="xy", scale=1, color=color, width=0.0028, headwidth=5, zorder=5
     )
-    return np.concatenate([tails + share * vectors for share in (0.0, 0.35, 0.7, 1.0)])
+    return np.concatenate([tails + share * vectors for share in np.linspace(0, 1, 13)])
 
 
 def settle(axes: Axes) -> None:
@@ -120,15 +137,16 @@ def settle(axes: Axes) -> None:
             page.draw_without_rendering()
 
 
-def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence[Array]) -> list[Box]:
-    """Write names in order where they cover least, on their own side of the closed polygons (j, 2) of the boundary.
+def place_names(axes: Axes, names: Sequence[Name], drawn: Array, bodies: Sequence[Sequence[Array]]) -> list[Box]:
+    """Write names in order where they cover least, on their own side of the closed polygons (j, 2) of each body.
 
     `drawn` are points (k, 2) of the drawing. The limits of the axes must be set, and the page be settled. Names keep
-    off a legend and the labels of the axes. Return the boxes of what is taken.
+    off a legend and the labels of the axes. A thin line leads to one that stands far from its anchor. Return the boxes
+    of what is taken.
     """
     to_page, frame = axes.transData, _room(axes)
     ink = to_page.transform(drawn)
-    walls = [Path(to_page.transform(loop)) for loop in loops]
+    walls = [[Path(to_page.transform(loop)) for loop in loops] for loops in bodies]
     beside = [axes.xaxis.label, axes.yaxis.label, axes.get_legend()]
     taken = [Box(*item.get_window_extent().extents) for item in beside if item is not None]
     for name in names:
@@ -136,17 +154,76 @@ def place_names(axes: Axes, names: Sequence[Name], drawn: Array, loops: Sequence
         text.set_in_layout(False)  # or the next layout would move what it was placed beside
         extent = text.get_window_extent()
         size = (extent.width + 10, extent.height + 4)
-        anchors, centers = _places(to_page.transform(name.anchors), name.directions, size)
-        near_side = ~_beyond(walls, anchors, centers)
-        both = near_side & _holds(frame, centers, size)
-        for admissible in (both & ~_crossed(walls, centers, size), both, near_side):
-            if admissible.any():
-                centers = centers[admissible]
-                break
-        chosen = centers[least_crowded(centers, size, taken, ink)]
+        chosen = _place(name, size, to_page.transform(name.anchors), frame, taken, ink, walls)
+        if chosen is None:
+            text.remove()
+            continue
         taken.append(centered(chosen, size))
         text.set_position(_to_data(axes, chosen))
+        named = to_page.transform(name.anchors if name.named is None else name.named)
+        ends = np.clip(named, chosen - np.array(size) / 2 + 5, chosen + np.array(size) / 2 - 5)
+        at = int(np.argmin(np.hypot(*(ends - named).T)))
+        anchor, end = named[at], ends[at]
+        if name.directions.any() and np.hypot(*(end - anchor)) > FAR:
+            line = np.array([_to_data(axes, point) for point in (anchor, end)])
+            axes.plot(*line.T, color=name.color, linewidth=0.7, alpha=0.7, zorder=5, scalex=False, scaley=False)
+            ink = np.concatenate([ink, anchor + np.linspace(0, 1, 30)[:, None] * (end - anchor)])
     return taken
+
+
+def _place(
+    name: Name,
+    size: tuple[float, float],
+    anchors: Array,
+    frame: Bbox,
+    taken: Sequence[Box],
+    ink: Array,
+    walls: Sequence[Sequence[Path]],
+) -> Array | None:
+    """Center (2,) of a name on the page: beside its anchor, else in free space, else across other names.
+
+    None if it is optional and there is no room.
+    """
+    anchors, centers = _places(anchors, name.directions, size)
+    lines = [wall for loops in walls for wall in loops]
+
+    def least(centers: Array) -> Array:
+        return centers[least_crowded(centers, size, taken, ink)]
+
+    def free(centers: Array) -> BoolArray:
+        return np.array([not any(overlap(centered(center, size), box) for box in taken) for center in centers], bool)
+
+    held = _holds(frame, centers, size)
+    side = held.copy()
+    side[held] = _on_side(walls, anchors[held], centers[held], name.body)
+    room = side & free(centers)
+    if name.optional:
+        room &= (np.abs(centers - anchors) - np.array(size) / 2).max(axis=1) < FAR
+    room[room] = ~_crossed(lines, centers[room], size)
+    if room.any():
+        return least(centers[room])
+    if name.optional:
+        return None
+    if name.body is None and (near := side & free(centers)).any():
+        center = least(centers[near])
+        if crowd(centered(center, size), [], ink) < CROSSED:  # it may stand across the outline of a body
+            return center
+    grid = _grid(frame, size)
+    grid = grid[free(grid) & ~_inside(walls, grid).any(axis=0)]
+    grid = grid[~_crossed(lines, grid, size)]
+    distances = np.hypot(*(grid[:, None] - anchors).transpose(2, 0, 1))
+    if name.body is not None:  # a line through another body would seem to lead to that
+        ways = anchors[distances.argmin(axis=1)] + SHARES[:, None, None] * (grid - anchors[distances.argmin(axis=1)])
+        others = [loops for body, loops in enumerate(walls) if body != name.body]
+        blocked = _inside(others, ways.reshape(-1, 2)).any(axis=0).reshape(ways.shape[:2])
+        distances += BLOCKED * np.any(blocked, axis=0, keepdims=True).T
+    near = np.argsort(distances.min(axis=1, initial=np.inf), kind="stable")[:FREE_PLACES]
+    if len(near):
+        return least(grid[near])
+    for admissible in (side, held):
+        if admissible.any():
+            return least(centers[admissible])
+    return least(centers)
 
 
 def place_arrow(axes: Axes, symbol: str, vector: Array, drawn: Array, taken: Sequence[Box]) -> None:
@@ -192,6 +269,8 @@ def _grid(frame: Bbox, size: tuple[float, float]) -> Array:
 
 def _places(anchors: Array, directions: Array, size: tuple[float, float]) -> tuple[Array, Array]:
     """Anchors (c, 2), and centers (c, 2) for a text of this size beside them: near ones first, then those aside."""
+    if not directions.any():
+        return anchors, anchors
     across = directions[:, ::-1] * (-1, 1)
     reach, aside = (np.abs(way) @ np.array(size) / 2 for way in (directions, across))
     centers = [
@@ -214,9 +293,18 @@ def _crossed(walls: Sequence[Path], centers: Array, size: tuple[float, float]) -
     return np.array([any(wall.intersects_bbox(box, filled=False) for wall in walls) for box in boxes], bool)
 
 
-def _beyond(walls: Sequence[Path], anchors: Array, centers: Array) -> BoolArray:
-    """Whether the way from each anchor (c, 2) to its place (c, 2) crosses a wall."""
-    way = anchors + np.linspace(0.05, 1.0, 20)[:, None, None] * (centers - anchors)
-    within = [wall.contains_points(way.reshape(-1, 2)).reshape(way.shape[:2]) for wall in walls]
-    inside = np.logical_xor.reduce(within)
-    return (inside != inside[0]).any(axis=0)
+def _inside(walls: Sequence[Sequence[Path]], points: Array) -> BoolArray:
+    """Whether each body holds points (k, 2), one row (k,) a body."""
+    rows = [np.logical_xor.reduce([wall.contains_points(points) for wall in loops]) for loops in walls]
+    return np.array(rows, bool).reshape(len(walls), len(points))
+
+
+def _on_side(walls: Sequence[Sequence[Path]], anchors: Array, centers: Array, body: int | None) -> BoolArray:
+    """Whether the way from each anchor (c, 2) to its place (c, 2) stays inside or outside of each body.
+
+    That of a name of a `body` goes through no other one.
+    """
+    way = anchors + SHARES[:, None, None] * (centers - anchors)
+    inside: BoolArray = _inside(walls, way.reshape(-1, 2)).reshape(len(walls), *way.shape[:2])
+    stays = (inside == inside[:, :1]).all(axis=(0, 1))
+    return stays if body is None else stays & ~np.delete(inside, body, axis=0).any(axis=(0, 1))

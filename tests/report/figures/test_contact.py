@@ -1,22 +1,38 @@
 """The picture of a contact: body and rigid surfaces where they are, and a fan as long as the pressure is large."""
 
+import re
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
-from drawings import block_in_a_corner, grey_lines, off, outlines, seal_in_a_groove, strokes
+from drawings import (
+    block_in_a_corner,
+    grey_lines,
+    hub_on_a_shaft,
+    leaves,
+    off,
+    outlines,
+    roller_in_a_groove,
+    seal_in_a_groove,
+    strokes,
+)
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
+from matplotlib.path import Path as Outline
+from matplotlib.tri import TriContourSet
+from tool_problems import of_peaks
 
 from bemcontact import spec
 from bemcontact.analysis import solve as analysis
+from bemcontact.options import StressMeasure
 from bemcontact.report import figures
-from bemcontact.report.figures.deformed import THROUGH
-from bemcontact.report.figures.page import BLACK, GREY, VERMILION
-from bemcontact.report.figures.surfaces import TURN, reach_through
+from bemcontact.report.figures.page import BLACK, BODIES, GREY, VERMILION
+from bemcontact.report.figures.surfaces import THROUGH, TURN, reach_through
 
 MODELS = Path(__file__).parents[3] / "models"
 
@@ -90,7 +106,7 @@ def test_punch_ends_where_the_boundary_beside_it_lies_in_its_face():
 def test_peak_of_each_zone_is_written_with_its_unit(name: str, zones: int):
     result = solved(name)
     contact, pressure = result.contact, result.solution.pressure
-    texts = [text.get_text().split(",")[0].split() for text in drawn(result).texts]
+    texts = [text.get_text().split(",")[0].split() for text in drawn(result).texts if text.get_text() != "$g$"]
     peaks = [pressure[contact.zone == zone].max() for zone in range(zones)]
     assert [float(value) for value, _ in texts] == pytest.approx(peaks, rel=1e-4)  # five figures
     assert {unit for _, unit in texts} == {"N/mm²"}
@@ -164,7 +180,7 @@ def test_zone_that_touches_without_pressure_has_no_fan(pressure: float):
 def factor_of(axes: Axes) -> float:
     """Read the stated magnification."""
     title = axes.get_title(loc="left")
-    return 1.0 if "displacements to scale" in title else float(title.split("× ")[1].split("\n")[0])
+    return 1.0 if "displacements to scale" in title else float(re.split("× |\n|,", title)[2])
 
 
 def test_deformed_outline_is_displaced_by_the_stated_factor(result: analysis.Result):
@@ -245,3 +261,111 @@ def test_the_largest_displacement_is_magnified_to_be_seen(result: analysis.Resul
     assert factor == 1 or seen <= 0.05
     larger = next(more for more in (2, 2.5) if f"{more * factor:.0e}"[0] in "125")
     assert seen >= 0.02 or reach_through(result, larger * factor) > THROUGH * size
+
+
+def bodies_of(axes: Axes) -> list[np.ndarray]:
+    """Outlines of the bodies that are drawn."""
+    patches = [patch for patch in axes.patches if isinstance(patch, PathPatch)]
+    return [np.asarray(patch.get_path().vertices) for patch in patches if patch.get_edgecolor() == to_rgba(BLACK)]
+
+
+@cache
+def pressed() -> tuple[analysis.Result, Axes]:
+    result, axes = analysis.solve(hub_on_a_shaft()), Figure(figsize=(5, 5)).add_subplot()
+    figures.draw_deformed(axes, result)
+    return result, axes
+
+
+def test_magnified_bodies_with_an_interference_meet_where_they_touch():
+    """The interference is not drawn, but magnified as displacements are: shaft and hub have one radius."""
+    _, axes = pressed()
+    shaft, hub = (np.hypot(*outline.T) for outline in bodies_of(axes))
+    assert factor_of(axes) * 0.002 > 10 * THROUGH * 4
+    assert "also the initial ones" in axes.get_title(loc="left")
+    assert shaft.max() == pytest.approx(hub.min(), abs=2e-5 * 4)  # quadratic elements
+
+
+def test_magnified_bodies_move_by_the_stated_factor_from_their_dashed_outlines():
+    """Also where a body is bent: the hole of the hub is narrower by the magnified interference, the outside stays."""
+    result, axes = pressed()
+    factor, state = factor_of(axes), result.boundary
+    assert state is not None
+    dashed = outlines(axes, GREY)
+    own = np.array([name == "hub/bore" for name in state.edge_names])[state.edge]
+    inward = 1 - factor * 0.002 / 2
+    assert off(inward * state.points[own], dashed) < 1e-9
+    assert off(inward * state.points[own] + factor * state.displacement[own], np.concatenate(bodies_of(axes))) < 1e-9
+
+
+def test_stress_fills_the_bodies_as_they_are_drawn():
+    result = pressed()[0]
+    axes = Figure(figsize=(5, 5)).add_subplot()
+    figures.draw_deformed(axes, result, StressMeasure.VON_MISES)
+    filled = np.concatenate([
+        path.vertices for item in axes.collections if isinstance(item, TriContourSet) for path in item.get_paths()
+    ])  # fmt: skip
+    radius = np.hypot(*np.concatenate(bodies_of(axes)).T)
+    assert np.hypot(*filled.T).max() == pytest.approx(radius.max(), rel=1e-3)
+
+
+def test_whole_contact_of_two_bodies_is_marked_once():
+    _, axes = pressed()
+    (line,) = strokes(axes)
+    assert line[[0, -1]].min(axis=1) == pytest.approx([0, 0], abs=1e-6)
+
+
+def test_magnified_bodies_do_not_reach_through_each_other():
+    """A roller between plates: the gap as drawn closes beside the contact before it would be seen to."""
+    problem = spec.load(MODELS / "bodies" / "two_cylinders.yaml").with_value("accuracy", 0.1)
+    result, axes = analysis.solve(problem), Figure(figsize=(5, 5)).add_subplot()
+    figures.draw_deformed(axes, result)
+    assert factor_of(axes) > 1
+    one, other = bodies_of(axes)
+    for outline, around in ((one, other), (other, one)):
+        inside = outline[Outline(around, closed=True).contains_points(outline)]
+        assert not len(inside) or off(inside, around) < 1.1 * THROUGH * problem.size
+
+
+@cache
+def in_a_groove() -> analysis.Result:
+    result = analysis.solve(roller_in_a_groove())
+    return replace(result, accuracy=of_peaks(result, 0.01 * float(result.solution.pressure.max())))
+
+
+def test_close_up_shows_one_of_two_contacts_far_apart():
+    result, axes = in_a_groove(), Figure(figsize=(4, 4)).add_subplot()
+    figures.draw_contact(axes, result, "seat")
+    (text,) = (text for text in axes.texts if text.get_text() != "$g$")
+    assert np.ptp(axes.get_xlim()) < 6
+    assert axes.get_xlim()[0] < text.get_position()[0] < axes.get_xlim()[1]
+
+
+def test_each_of_two_equal_peaks_has_its_error_bar():
+    texts = [text.get_text() for text in drawn(in_a_groove()).texts]
+    assert sum("±" in text for text in texts) == 2
+
+
+@pytest.mark.parametrize("draw", [figures.draw_contact, figures.draw_deformed])
+def test_rigid_body_is_drawn_whole(draw: Callable[[Axes, analysis.Result], None]):
+    axes = Figure(figsize=(4, 4)).add_subplot()
+    draw(axes, in_a_groove())
+    (ground,) = grey_lines(axes)
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    assert np.ptp(ground, axis=0) == pytest.approx([40, 22], rel=1e-6)
+    assert (ground > (left, low)).all()
+    assert (ground < (right, high)).all()
+
+
+def test_bodies_have_their_names_and_colors():
+    axes = Figure(figsize=(12, 4)).add_subplot()
+    figures.draw_contact(axes, analysis.solve(leaves()))
+    names = {text.get_text(): text.get_position()[1] for text in axes.texts}
+    assert 0 < names["long"] < 4
+    assert -4 < names["short"] < 0
+    fills = [patch.get_facecolor() for patch in axes.patches if isinstance(patch, PathPatch) and patch.get_fill()]
+    assert {to_rgba(color) for color in BODIES[:2]} <= {tuple(color) for color in fills}
+
+
+def test_weight_of_a_body_is_drawn():
+    axes = drawn(in_a_groove())
+    assert "$g$" in [text.get_text() for text in axes.texts]

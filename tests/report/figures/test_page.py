@@ -1,6 +1,7 @@
 """Pages of all pictures: their files, sizes, colors, and a page written twice is the same."""
 
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import matplotlib.colors
@@ -12,6 +13,7 @@ from drawings import beam_over_a_circle, block_in_a_corner, seal_in_a_groove
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
+from matplotlib.ticker import ScalarFormatter
 
 import bemcontact
 from bemcontact.analysis import solve as analysis
@@ -19,7 +21,7 @@ from bemcontact.bem import mesh
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problem import Problem
 from bemcontact.report import figures
-from bemcontact.report.figures.page import distance_label, legend_below, new_page, pieces_of
+from bemcontact.report.figures.page import RoundTicks, distance_label, legend_below, new_page, pieces_of
 
 
 @settings(deadline=None)
@@ -121,3 +123,19 @@ def test_a_legend_below_is_below_the_label_of_the_axis(label: str):
     legend = axes.get_legend()
     assert legend is not None
     assert legend.get_window_extent().y1 <= axes.xaxis.label.get_window_extent().y0
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.0, 7.0), (0.058985, 0.059012), (-3.6e-7, 8.2e-7), (123450.0, 123457.0)])
+@pytest.mark.parametrize("width", [3.0, 6.0])
+def test_tick_labels_do_not_overlap(low: float, high: float, width: float):
+    figure = new_page(width, 2.0)
+    axes = figure.add_subplot()
+    axes.set_xlim(low, high)
+    axes.xaxis.set_major_locator(RoundTicks(7))
+    axes.xaxis.set_major_formatter(ScalarFormatter(useOffset=False))
+    figure.draw_without_rendering()  # the layout is settled
+    figure.draw_without_rendering()
+    shown = [label for label in axes.get_xticklabels() if low <= label.get_position()[0] <= high]
+    boxes = [label.get_window_extent() for label in shown]
+    assert len(shown) >= 2
+    assert all(a.x1 < b.x0 for a, b in pairwise(boxes))

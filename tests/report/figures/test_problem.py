@@ -2,12 +2,23 @@
 
 import numpy as np
 import pytest
-from drawings import beam_over_a_circle, block_in_a_corner, grey_lines, off, only_axes, strokes
+from drawings import (
+    beam_over_a_circle,
+    block_in_a_corner,
+    grey_lines,
+    leaves,
+    off,
+    only_axes,
+    roller_in_a_groove,
+    strokes,
+)
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.path import Path as Outline
 from matplotlib.quiver import Quiver
 from matplotlib.text import Annotation
+from roller_bearings import bearing
 from tool_problems import HELD, HELD_CASES, made
 
 from bemcontact.analysis import solve as analysis
@@ -15,7 +26,7 @@ from bemcontact.bem import mesh
 from bemcontact.problem import DeflectedContour, Problem
 from bemcontact.report import figures
 from bemcontact.report.figures.page import GREY
-from bemcontact.report.figures.problem import draw_tools
+from bemcontact.report.figures.problem import draw_tools, fills, polygons_of
 
 
 def test_each_edge_is_named_and_no_name_covers_another(problem: Problem):
@@ -224,3 +235,57 @@ def test_forces_on_an_edge_add_up_in_the_picture():
     [right] = [vectors for tails, vectors in rows(axes) if len(tails) > 1 and tails[:, 0].min() >= 2]
     assert (right[:, 0] < 0).all()
     assert right[:, 1] == pytest.approx(2 * right[:, 0])
+
+
+def test_names_of_edges_stand_in_no_other_body():
+    """The names of a slender body have two lines, for which there is no room in it."""
+    problem = leaves()
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    places = {text.get_text().split("\n")[0]: text.get_position() for text in axes.texts}
+    assert set(places) == {edge.name for edge in problem.edges}
+    assert not any(0 < x < 100 and 0 < y < 4 for name, (x, y) in places.items() if name.startswith("short"))
+    assert not any(0 < x < 60 and -4 < y < 0 for name, (x, y) in places.items() if name.startswith("long"))
+
+
+def test_name_far_from_its_edge_has_a_line_to_it():
+    problem = leaves()
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    (text,) = (item for item in axes.texts if item.get_text().startswith("short/top"))
+    starts = [np.asarray(line.get_xydata())[0] for line in axes.lines if line.get_color() == text.get_color()]
+    assert any(abs(start[1]) < 1e-9 and 0 <= start[0] <= 60 for start in starts)
+
+
+@pytest.mark.slow
+def test_many_bodies_have_their_names_and_edges_where_there_is_room():
+    problem = bearing(1.0, 0.0, elements=16)
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    texts = {text.get_text(): text for text in axes.texts}
+    for part, loops in zip(problem.parts, polygons_of(problem), strict=True):
+        inside = [Outline(loop).contains_point(texts[part.name].get_position()) for loop in loops]
+        assert np.logical_xor.reduce(inside)
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+    assert not any("/" in text for text in texts)
+
+
+def test_load_cases_that_are_not_drawn_are_named_with_the_option():
+    problem = made(HELD, **HELD_CASES)
+    title = only_axes(figures.figure_of_problem(problem, mesh.build(problem))).get_title(loc="left")
+    assert "--case" in title
+    assert all(case in title for case in problem.case_names)
+    one = problem.with_case(problem.case_names[0])
+    assert "--case" not in only_axes(figures.figure_of_problem(one, mesh.build(one))).get_title(loc="left")
+
+
+def test_weight_of_one_of_several_bodies_is_drawn_at_it():
+    problem = roller_in_a_groove()
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    (weight,) = [item for item in axes.collections if isinstance(item, Quiver) and np.ravel(item.V).min() < 0]
+    middle = np.asarray(weight.get_offsets())[0] + np.array([0, weight.V[0] / 2])
+    assert middle == pytest.approx([0, 14.142], abs=1e-3)
+
+
+def test_copies_among_many_bodies_share_a_color():
+    colors = dict(zip((part.name for part in bearing(1.0, 0.0, 16).parts), fills(bearing(1.0, 0.0, 16)), strict=True))
+    assert len(set(colors.values())) == len({name.split()[0] for name in colors})
+    assert len(set(fills(leaves()))) == 2

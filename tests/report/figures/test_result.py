@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from drawings import block_in_a_corner
+from drawings import block_in_a_corner, leaves
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mesh_studies import punch
+from roller_bearings import bearing
 from tool_problems import FREE, FREE_CASES, made, not_met, of_peaks
 
 import bemcontact
@@ -291,3 +292,32 @@ def test_the_picture_of_each_model_can_be_drawn(path: Path):
         problem = problem.with_value("accuracy", 0.1)
     results = bemcontact.solve_cases(problem) if problem.load_cases else bemcontact.solve(problem)
     figures.figure_of(results).draw_without_rendering()
+
+
+@pytest.mark.slow
+def test_bars_show_each_of_many_contacts_that_is_closed():
+    """The inner ring is pressed down: the rollers above it are free."""
+    result = bemcontact.solve(bearing(1.0, 1e-3, elements=48))
+    force = {name: np.hypot(*force) for name, force in result.footprint.forces.items()}
+    closed = [name for name in result.contact.zone_names if force[name] > 0]
+    assert 0 < len(closed) < len(force)
+    page = figures.figure_of_result(result)
+    page.draw_without_rendering()
+    peaks, forces = (
+        next(axes for axes in page.axes if axes.get_xlabel().startswith(label)) for label in ("largest", "force")
+    )
+    assert [label.get_text() for label in peaks.get_yticklabels()] == closed
+    assert [bar.get_width() for bar in forces.patches] == pytest.approx([force[name] for name in closed])
+    left_open = [name for name in force if name not in closed]
+    assert peaks.get_title(loc="left").startswith(f"no contact: {left_open[0]}, ")
+    panels = [axes.get_title(loc="left") for axes in page.axes if axes.get_ylabel().startswith("pressure")]
+    assert len(panels) == min(3, len(closed))
+    assert min(force[name] for name in panels) >= sorted(force.values())[-3] * (1 - 1e-9)
+
+
+def test_pictures_of_a_long_body_are_aligned():
+    page = figures.figure_of_result(analysis.solve(leaves()))
+    page.draw_without_rendering()
+    contact, shape = (axes.get_position() for axes in page.axes[:2])
+    assert (contact.x0, contact.x1) == pytest.approx((shape.x0, shape.x1), abs=5e-3)
+    assert contact.width > 0.75
