@@ -153,11 +153,9 @@ def _pairs_changed(
         i = int(pressure.argmax())
         pair, place = surface.pairs(contact.points[i : i + 1]), nearest_on(surface.first, contact.points[i : i + 1])
         other = places_at(surface.edges, pair.edge, pair.fraction)
-        bends = (
-            surface.share * abs(curvatures(surface.first, place)),
-            (1 - surface.share) * abs(curvatures(surface.edges, other)),
-        )
-        part = float(np.hypot(*(motion + np.array(surface.approach))) * sum(bends)[0]) / 2
+        own, its = float(curvatures(surface.first, place)[0]), float(curvatures(surface.edges, other)[0])
+        bend = surface.share * abs(own) + (1 - surface.share) * abs(its)
+        part = float(np.hypot(*(motion + np.array(surface.approach)))) * bend / 2
         if part < noted(gaps.problem):
             continue
         words = (

@@ -54,7 +54,7 @@ class StressOfBodies:
         bodies = [
             BodyStress.of(
                 problem, number, part.mesh, boundary.displacement[part.elements], boundary.traction[part.elements],
-                touching[:, part.elements].any(axis=0), places,
+                np.asarray(touching[:, part.elements].any(axis=0)), places,
             )
             for number, part in enumerate(mesh.parts)
         ]  # fmt: skip

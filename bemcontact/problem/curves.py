@@ -142,7 +142,7 @@ class EllipticArc:
         """Both semi-axes [L]."""
         return self.semi_axes
 
-    @cached_property
+    @property
     def length(self) -> float:
         """Arc length [L], by the incomplete elliptic integral of the second kind."""
         first, last = self._at_ends

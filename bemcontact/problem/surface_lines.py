@@ -186,7 +186,7 @@ class Polyline(SpecModel):
         within = [_dot(between_normals(own[:, 1], lefts[i + 1], lefts[i]), own[:, 1]) for i in ridges.T]
         within = np.where(np.isfinite(distances), np.transpose(within), -np.inf)
         near = distances <= np.where(turn < 0, reach, 0.0)[:, None] + ON_CORNER * self._extent(points)
-        flat, smooth = near.any(axis=1), straight & np.isfinite(distances).any(axis=1)
+        flat, smooth = np.asarray(near.any(axis=1)), straight & np.isfinite(distances).any(axis=1)
         chosen = np.where(flat, distances.argmin(axis=1), within.argmax(axis=1))
         which = ridges[np.arange(len(points)), chosen]
         before, after, offset = lefts[which], lefts[which + 1], points - self.sides.corners[which + 1]
