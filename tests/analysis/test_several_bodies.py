@@ -435,26 +435,24 @@ def test_bodies_that_bulge_into_each_other_below_a_third_are_named():
     assert "between: [a, b]" in penetration.words or "between: [b, a]" in penetration.words
 
 
-@pytest.mark.parametrize(
-    ("down", "said"),
-    [
-        (0.6, "'disk' penetrates 'base' by …on 'disk/under', beyond the part of this edge that may touch in 'c'"),
-        (0.5, "'disk/under' may touch in 'c' on a part of it only, and is inside its surface"),
-    ],
-)
-def test_an_edge_of_which_a_part_may_touch_is_not_said_to_be_in_no_zone(down, said):
+@pytest.mark.parametrize("down", [0.5, 0.6])
+def test_an_edge_of_which_a_part_may_touch_is_not_said_to_be_in_no_zone(down):
     """A soft quarter disk comes to lie flat where its gap as drawn is more than 3 % of its size."""
     disk = [{"name": "under", "kind": "arc", "center": [0, 4], "radius": 4, "angles": [-90, 0]},
             {"name": "top", "end": [0, 4]}, {"name": "axis"}]  # fmt: skip
     conditions = {"axis": {"displacement": {"x": 0}}, "top": {"displacement": {"y": -down}}}
     bodies = {"disk": elastic({"outer": disk}, conditions), "base": rigid(block((-1, 9), (-2, 0)))}
-    notes = solved(bodies, 0.1, c=["disk", "base"]).notes
+    result = solved(bodies, 0.1, c=["disk", "base"])
+    assert result.penetration is not None
+    notes = [result.penetration.words, *result.notes]
+    said = "'disk' penetrates 'base' by …on 'disk/under', beyond the part of this edge that may touch in 'c'"
     remedy = "educe the load, or name edges in between, such as disk/under…0.17 larger…3 % of the size"
     assert_states(next(note for note in notes if "'disk/under'" in note), f"{said}…{remedy}")
     assert_states(next(note for note in notes if "contact reaches" in note), f"goes on smoothly; r{remedy}")
     assert not any("not in" in note or "make the zone longer" in note for note in notes)
     named = solved(bodies, 0.1, c=["disk/under", "base"])
-    assert named.penetration is None
+    assert named.penetration is not None  # the load is too large for linear theory, but nothing is inside
+    assert "penetrates" not in named.penetration.words
     assert not any("'disk/under'" in note for note in named.notes)
 
 
