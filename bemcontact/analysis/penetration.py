@@ -23,7 +23,7 @@ from bemcontact.bem.surface_gaps import FaceEnd, SurfaceGaps, surface_gaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
-from bemcontact.problem.loops import first_meeting, signed_area
+from bemcontact.problem.loops import contains, first_meeting, signed_area
 from bemcontact.problem.problem import Problem
 
 DETAIL = 1e-4
@@ -166,7 +166,7 @@ def _swallowed(
             if other == name or frozenset((name, other)) in stated:
                 continue
             own = [number for number, body in enumerate(bodies) if body == other]
-            before, after = (_is_inside(lines[i][0], [lines[j] for j in own]) for lines in (drawn, moved))
+            before, after = (sum(contains(lines[j], lines[i][0]) for j in own) % 2 for lines in (drawn, moved))
             if after and not before:
                 x, y = drawn[i][0].tolist()
                 edge = gaps.outline.mesh.edge_names[gaps.outline.mesh.edge[loops[i][0]]]
@@ -179,17 +179,6 @@ def _swallowed(
                     ),
                 )  # fmt: skip
     return None
-
-
-def _is_inside(point: Array, lines: Sequence[Array]) -> bool:
-    """Whether a point (2,) is inside closed lines (k, 2): a ray from it crosses them an odd number of times."""
-    (x, y), crossings = point, 0
-    for line in lines:
-        start, end = line, np.roll(line, -1, axis=0)
-        across = (start[:, 1] > y) != (end[:, 1] > y)
-        part = (y - start[across, 1]) / (end[across, 1] - start[across, 1])
-        crossings += int((start[across, 0] + part * (end[across, 0] - start[across, 0]) > x).sum())
-    return crossings % 2 == 1
 
 
 def _without_details(line: Array, length: float) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, nonnegative_residual
 from bemcontact.bem.bonds import BondedPoints
-from bemcontact.bem.contact_points import ContactPoints, UnitPressures, contact_points
+from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
 from bemcontact.bem.mesh import Mesh, MeshPart, build
 from bemcontact.bem.outline import Outline
@@ -23,6 +23,7 @@ from bemcontact.bem.rigid_motions import (
     placed_tools,
     toward,
 )
+from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.checks.memory import ensure_memory
 from bemcontact.contact.free_motions import MotionAlgebra
 from bemcontact.contact.load_cases import BALANCED, Pinned

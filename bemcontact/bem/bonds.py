@@ -10,8 +10,8 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from bemcontact.arrays import Array, IntArray
-from bemcontact.bem.contact_points import UnitPressures
 from bemcontact.bem.mesh import BoundaryValues, Mesh, MeshPart
+from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.problem.problem import Problem
 
 

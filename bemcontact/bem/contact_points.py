@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import BoundaryValues, Mesh, MeshPart
 from bemcontact.bem.outline import Outline
+from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.body_surface import AnySurface, BodySurface
 from bemcontact.problem.problem import Problem
@@ -26,47 +27,6 @@ SMOOTH = 0.05
 """Sine of the angle between elements below which the boundary is smooth: quadratic elements on a curve kink a bit."""
 CONSISTENT_ORDER = 12
 """Gauss points for the consistent weights."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class UnitPressures:
-    """Where unit pressures act on the mesh of one body, and where their displacement counts.
-
-    Parameters
-    ----------
-    number : (c,) of each pressure among all contact points
-    element, local, pressure : (q,) the (element, local node) pairs that carry each of these pressures
-    traction : (q, 2) there
-    node : (r,) nodes whose displacement changes a gap
-    gap : (r,) number of the point of this gap
-    change : (r, 2) of the gap by unit displacements along x and y
-    """
-
-    number: IntArray
-    element: IntArray
-    local: IntArray
-    pressure: IntArray
-    traction: Array
-    node: IntArray
-    gap: IntArray
-    change: Array
-
-    @classmethod
-    def none(cls) -> Self:
-        """No pressures, for a body that touches nothing."""
-        numbers, vectors = np.zeros(0, int), np.zeros((0, 2))
-        return cls(
-            number=numbers, element=numbers, local=numbers, pressure=numbers, traction=vectors, node=numbers,
-            gap=numbers, change=vectors,
-        )  # fmt: skip
-
-    def __len__(self) -> int:
-        """Return the number of pressures."""
-        return len(self.number)
-
-    def turned(self, turn: Array) -> Self:
-        """Return these pressures on a body that is turned by a rotation (2, 2), x @ turn."""
-        return replace(self, traction=self.traction @ turn, change=self.change @ turn)
 
 
 class Opposite(NamedTuple):

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.bem.contact_points import UnitPressures
 from bemcontact.bem.loading import Loading, particular_solution
 from bemcontact.bem.mesh import BoundaryValues, Mesh, boundary_values
 from bemcontact.bem.rigid_motions import free_rigid_motions
 from bemcontact.bem.solution import solve_system
 from bemcontact.bem.system import System
+from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.problem.problem import Problem
 from bemcontact.problem.rigid_surface import DeflectedContour

@@ -8,8 +8,9 @@ from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.bonds import BondedPoints, split_motions
-from bemcontact.bem.contact_points import ContactPoints, UnitPressures
+from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.problem.contact_zone import RigidTool, ToolAction
 from bemcontact.problem.problem import Problem
 

@@ -9,6 +9,7 @@ from pydantic import Field, PrivateAttr
 
 from bemcontact.checks.arguments import text_of_argument
 from bemcontact.errors import Issue, KeyPath, ProblemError
+from bemcontact.problem.approach import approached
 from bemcontact.problem.bodies import (
     SEPARATOR,
     BodyContact,
@@ -28,7 +29,6 @@ from bemcontact.problem.contact_zone import ContactZone
 from bemcontact.problem.curves import CircularArc, Edge
 from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.material import Material
-from bemcontact.problem.nearest_places import approached
 from bemcontact.problem.pairing import OppositePart, opposite_parts
 from bemcontact.problem.units import Units
 from bemcontact.problem.validation import Name, SpecModel, Text, Title, left_out

@@ -4,12 +4,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from bemcontact.bem.contact_points import UnitPressures
 from bemcontact.bem.loading import Loading, particular_solution
 from bemcontact.bem.mesh import BoundaryValues, Mesh, connected
 from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
 from bemcontact.bem.solution import solve_system
 from bemcontact.bem.system import System
+from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.problem.conditions import Loads
 from bemcontact.problem.material import Material
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from bemcontact.bem.contact_points import UnitPressures
 from bemcontact.bem.loading import permanent_loading
 from bemcontact.bem.mesh import build
 from bemcontact.bem.outline import Outline
@@ -11,6 +10,7 @@ from bemcontact.bem.rigid_motions import free_rigid_motions
 from bemcontact.bem.solution import solve_system
 from bemcontact.bem.stress_field import StressField, smooth_starts
 from bemcontact.bem.system import System
+from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.problem.conditions import Condition
 from bemcontact.problem.problem import Problem
 
