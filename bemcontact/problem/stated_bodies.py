@@ -37,8 +37,8 @@ from bemcontact.problem.visibility import edges_that_see, zone_edges
 REACH = 0.03
 """Part of the size of the smaller of two whole bodies up to which gaps may close: a larger strain is not small."""
 
-CONCENTRIC = 1e-9
-"""Distance of two centers over the radius up to which they are one."""
+SAME_CIRCLE = 1e-9
+"""Distance of two centers, and difference of two radii, over the radius up to which they are equal."""
 
 
 class StatedBodies(SpecModel):
@@ -234,7 +234,7 @@ class StatedBodies(SpecModel):
         two such bodies the smaller one has them.
         """
         radii = self._spinning_radius(first), self._spinning_radius(second)
-        if radii[0] != radii[1]:
+        if abs(radii[0] - radii[1]) > SAME_CIRCLE * min(radii):
             return float(radii[0] < radii[1])
         moduli = [self._material(name).contact_modulus for name in (first, second)]
         return moduli[0] / sum(moduli)
@@ -262,7 +262,7 @@ class StatedBodies(SpecModel):
         if held or bonded or not arcs or len(arcs) < len(curves):
             return np.inf
         radius = max(max(arc.radii) for arc in arcs)
-        return radius if np.ptp([arc.center for arc in arcs], axis=0).max() <= CONCENTRIC * radius else np.inf
+        return radius if np.ptp([arc.center for arc in arcs], axis=0).max() <= SAME_CIRCLE * radius else np.inf
 
     def on_pairs_of(self, other: Self) -> Self:
         """Copy whose bodies form the pairs that they form in another problem with the same boundaries and contacts.

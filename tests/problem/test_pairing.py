@@ -178,3 +178,19 @@ def test_pairs_do_not_jump_where_a_part_ends(pair):
         found = surface.pairs(spec.edge(part.edge).points(end + way * np.array([-1e-9, 1e-9])))
         assert found.corner.tolist() == [False, True]
         assert np.abs(np.diff(found.points, axis=0)).max() < 1e-5
+
+
+@pytest.mark.parametrize(("radius", "share"), [(2.0, 1.0), (3.0, 0.25), (3.0 * (1 + 1e-15), 0.25), (4.0, 0.0)])
+def test_the_smaller_of_two_disks_that_may_spin_has_its_own_normals(radius, share):
+    """Of equal ones, whatever the rounding of their radii, both count by their moduli, which are one to three."""
+    rims = [
+        {"name": "rim", "kind": "arc", "center": [0, y], "radius": r, "angles": [0, 360]}
+        for y, r in ((radius, radius), (-3.0, 3.0))
+    ]
+    bodies = {"up": elastic({"outer": rims[:1]}), "low": elastic({"outer": rims[1:]}, modulus=3000.0)}
+    there, back = (
+        problem(bodies, 0.01, c=pair).zones["c"].surface for pair in (["up/rim", "low/rim"], ["low/rim", "up/rim"])
+    )
+    assert isinstance(there, BodySurface)
+    assert isinstance(back, BodySurface)
+    assert (there.share, back.share) == pytest.approx((share, 1 - share))
