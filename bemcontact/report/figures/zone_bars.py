@@ -50,6 +50,6 @@ def draw_zone_bars(axes: Axes, result: Result, quantity: Literal["peak", "force"
 
 
 def closed_zones(result: Result) -> list[str]:
-    """Names of the zones in which there is contact."""
-    touched = np.unique(result.contact.zone[result.touching]).tolist()
-    return [result.contact.zone_names[number] for number in touched]
+    """Names of the zones in which there is pressure; a loose body may touch without any, up to round-off."""
+    pressed = np.unique(result.contact.zone[result.solution.pressure > 0]).tolist()
+    return [result.contact.zone_names[number] for number in pressed]
