@@ -11,6 +11,7 @@ from bemcontact.adaptivity.fields import MeshDifference, Solved, solved, solved_
 from bemcontact.adaptivity.hidden_changes import told_apart
 from bemcontact.adaptivity.mesh_search import MeshSearch
 from bemcontact.adaptivity.mesh_sizes import MOST_UNKNOWNS, cut
+from bemcontact.adaptivity.moved_pairs import may_move, with_resting_pairs
 from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.bem.condense import Condensation, Condenser, condensed
@@ -78,7 +79,8 @@ def meshed(
     found = _found(cut(problem, 1), progress)
     if problem.mesh.refine == 1:
         return found
-    finer = stated(found.problem.refined(problem.mesh.refine), progress, errors=errors, singular=found.singular)
+    refined = found.problem.refined(problem.mesh.refine).on_pairs_of(found.problem)
+    finer = stated(refined, progress, errors=errors, singular=found.singular)
     known = tuple(mine.knowing(its) for mine, its in zip(finer.accuracies, found.accuracies, strict=True))
     return replace(finer, accuracies=known, singular=found.singular)
 
@@ -97,14 +99,18 @@ def stated(
     Parameters and errors are those of `meshed`; `condenser` condenses the problem on both meshes.
     """
     asked, refine, progress = problem.asked_accuracy, problem.mesh.refine, progress or (lambda _: None)
-    if asked is None or not errors:
-        return _unsolved(problem, condenser(problem), asked, NONE_ASKED if asked is None else NOT_ESTIMATED)
+    reason = NONE_ASKED if asked is None else NOT_ESTIMATED
     progress("mesh as stated")
-    condensation = condenser(problem)
+    condensation, judged = condenser(problem), errors and asked is not None
+    if not judged and not may_move(problem):
+        return _unsolved(problem, condensation, asked, reason)
     try:
-        own = solved_state(condensation)
+        own = with_resting_pairs(solved_state(condensation), condenser)
     except SolverError as error:
-        return _unsolved(problem, condensation, asked, str(error))
+        return _unsolved(problem, condensation, asked, str(error) if judged else reason)
+    problem = own.body.problem
+    if asked is None or not judged:
+        return _unsolved(problem, own.condensation, asked, reason)
     try:
         unknowns = 2 * own.counted_unknowns
         if not halved and unknowns > MOST_UNKNOWNS:
@@ -160,9 +166,14 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
     for number in range(1, passes + 1):
         start = f"pass {number}" + (f", error at most {100 * best.worst:.2g} %" if best else "")
         try:
-            coarse = search.fitted(
-                MOST_UNKNOWNS, lambda unknowns, start=start: progress(f"{start}, {unknowns} unknowns")
-            )
+
+            def tell(unknowns: int, start: str = start) -> None:
+                progress(f"{start}, {unknowns} unknowns")
+
+            coarse = search.fitted(MOST_UNKNOWNS, tell)
+            if number == 1 and (moved := with_resting_pairs(coarse, condensed)) is not coarse:
+                search = MeshSearch.of(problem.on_pairs_of(moved.body.problem))
+                coarse = search.fitted(MOST_UNKNOWNS, tell)
             if 2 * coarse.counted_unknowns > MOST_UNKNOWNS:
                 reason = f"a finer mesh would have more than {MOST_UNKNOWNS} unknowns"
                 break

@@ -1,6 +1,6 @@
 """The sizes that a mesh is made from: those of the geometry, of stated elements, and those that a search adds."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Self
@@ -9,7 +9,7 @@ import numpy as np
 
 from bemcontact.adaptivity.facing_sizes import FacingStretch, ends_of_parts, facing_stretches
 from bemcontact.adaptivity.first_sizes import SizedOutline, outline, surface_sizes
-from bemcontact.adaptivity.sizes import GROWTH, Layers, Limit, Loop
+from bemcontact.adaptivity.sizes import GROWTH, SAME, Layers, Limit, Loop
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problem.geometry import MOST_ELEMENTS
 from bemcontact.problem.problem import Problem
@@ -77,6 +77,8 @@ class MeshSizes:
             marks[number] += places
         for item in facing:
             marks[item.onto] += item.opposite_ends
+        for loop, own, ends in zip(shape.loops, limits, marks, strict=True):
+            own += between_marks(loop, ends)
         # A mesh that is found asks for the accuracy as before.
         kept = problem.model_copy(update={"accuracy": problem.asked_accuracy})
         return cls(problem=kept, outline=shape, sources=limits, marks=marks, facing=facing)
@@ -121,6 +123,14 @@ class MeshSizes:
 def first_mesh(problem: Problem) -> Problem:
     """The problem on the first mesh, from the geometry alone and the elements that are stated."""
     return MeshSizes.of(problem).mesh(1)
+
+
+def between_marks(loop: Loop, marks: Sequence[float]) -> Iterator[Limit]:
+    """Limits by which elements grow from places that are close to each other, where an element has to end at each."""
+    places = np.unique(np.append(np.mod(marks, loop.length), loop.joints))
+    apart = np.diff(places)
+    for low, size in zip(places[:-1][apart > SAME * loop.length], apart[apart > SAME * loop.length], strict=True):
+        yield Limit(low=float(low), high=float(low + size), size=float(size))
 
 
 def useful_limits(loop: Loop, limits: Sequence[Limit]) -> list[Limit]:

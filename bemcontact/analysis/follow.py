@@ -1,6 +1,7 @@
 """Paths and sensitivities of a problem by the key paths of a spec."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from numbers import Real
 from typing import Any
@@ -9,6 +10,7 @@ import numpy as np
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.mesh_sizes import cut
+from bemcontact.adaptivity.moved_pairs import may_move
 from bemcontact.analysis.path_states import FollowedPath, errors_at_breakpoints
 from bemcontact.analysis.penetration import penetration_on_path
 from bemcontact.analysis.solve import ensure_acting, ensure_kind
@@ -139,10 +141,14 @@ def _sensitivities(
 def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Problem, Mapping[float, Meshed]]:
     """The problem on a mesh that is accurate at both ends of a path, if a mesh is to be found.
 
-    With it comes what the searches at the ends found, for only a search recognizes infinite pressures. At one end the
-    load may fail to press the body onto its support.
+    Pairs of points of two elastic bodies are those at the end of the path. With the problem comes what the searches at
+    both ends found, for only a search recognizes infinite pressures. At one end the load may fail to press the body
+    onto its support.
     """
     if not problem.adapts:
+        if may_move(problem):
+            with suppress(ProblemError):
+                problem = problem.on_pairs_of(meshed(Variation(problem, key).at(end), errors=False).problem)
         return problem, {}
     problem = problem.model_copy(update={"variants": {}})  # they may not fit the mesh that is found
     found: dict[float, Meshed] = {}
@@ -154,7 +160,7 @@ def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Prob
         except ProblemError as error:
             refused.append(error)
         else:
-            on_mesh = problem.on_mesh_of(found[value].problem)
+            on_mesh = problem.on_mesh_of(found[value].problem).on_pairs_of(found[value].problem)
     if not found:
         raise refused[0]
     return on_mesh, found

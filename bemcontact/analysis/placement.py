@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from bemcontact.adaptivity.moved_pairs import motions_of_pairs
 from bemcontact.analysis.displaced_contact import Displaced, displaced, load_after, turn_of_body
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.footprint import footprint
@@ -24,7 +25,6 @@ from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.formulations import complementarity
 from bemcontact.problem.body_surface import BodySurface
-from bemcontact.problem.edge_places import curvatures, nearest_on, places_at
 from bemcontact.problem.problem import Problem
 
 LEAST_ASKED = 0.01
@@ -105,7 +105,7 @@ def placement(
     finite = [name for name in contact.zone_names if name not in infinite]
     misfit, said = _changed(gaps, points, contact, solution, again, moved, nearby, finite)
     if misfit is None and nearby is None:
-        misfit, others = _pairs_changed(gaps, points, contact, solution, moved)
+        misfit, others = _pairs_changed(gaps, points, body, contact, solution)
         said = (*said, *others, *_places_changed(gaps, contact, solution, replace(contact, **there), again))
     return misfit, (*overhangs, *turned, *said)
 
@@ -137,34 +137,26 @@ def _slides(
 
 
 def _pairs_changed(
-    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution, moved: Displaced
+    gaps: SurfaceGaps, points: ContactPoints, body: Body, contact: CondensedContact, solution: ContactSolution
 ) -> tuple[Penetration | None, tuple[str, ...]]:
-    """Judge how far two elastic bodies move beside the way to where they touch as drawn, as a pin does in its hole.
+    """Judge how far two elastic bodies move beside the way after which their pairs are formed.
 
-    Other points are opposite to each other then. Along a curved boundary the distances of pairs are off by the motion
-    over its radius, and a peak by about half of this: measured with pins that are drawn beside where they come to lie.
+    Load cases share pairs, and a body that moves on and on never is where they are.
     """
     said = list[str]()
-    for number, zone in enumerate(contact.zone_names):
-        surface, pressure = gaps.surfaces.get(zone), np.where(contact.zone == number, solution.pressure, 0.0)
-        if not isinstance(surface, BodySurface) or not surface.first or not (pressure > 0).any():
+    for zone, found in motions_of_pairs(body, contact, solution.pressure, gaps.state.displacement).items():
+        surface = gaps.surfaces[zone]
+        if not isinstance(surface, BodySurface) or found.change_of_peak(surface) < noted(gaps.problem):
             continue
-        motion = _motion_in(contact, moved, number, pressure)
-        i = int(pressure.argmax())
-        pair, place = surface.pairs(contact.points[i : i + 1]), nearest_on(surface.first, contact.points[i : i + 1])
-        other = places_at(surface.edges, pair.edge, pair.fraction)
-        own, its = float(curvatures(surface.first, place)[0]), float(curvatures(surface.edges, other)[0])
-        bend = surface.share * abs(own) + (1 - surface.share) * abs(its)
-        part = float(np.hypot(*(motion + np.array(surface.approach)))) * bend / 2
-        if part < noted(gaps.problem):
-            continue
+        part, motion = found.change_of_peak(surface), -found.beside(surface)
         words = (
-            f"both sides of '{zone}' move by {_vector(motion, gaps.problem.units.length)} against each other, beside "
-            "the way to where they touch as drawn: other points are opposite to each other then, and the peak pressure "
-            f"may be off by about {100 * part:.2g} %; draw the body near to where it will touch"
+            f"both sides of '{zone}' move by {_vector(motion, gaps.problem.units.length)} beside the places for which "
+            "points opposite to each other were found: others are opposite then, and the peak pressure may be off by "
+            f"about {100 * part:.2g} %; draw the body near to where it will touch"
         )
         if part >= WITHHELD:
-            depth = float(np.hypot(*motion))
+            own = contact.lengths_by_zone[contact.zone_names.index(zone)]
+            i, depth = int(np.argmax(own * solution.pressure)), float(np.hypot(*motion))
             words = f"{words[0].upper()}{words[1:]}."
             return _misfit(gaps, points, contact, i, Misfit.MOVED, depth, 0.0, words), ()
         said.append(f"{words}; error bars do not include this")

@@ -51,33 +51,48 @@ def approach(edges: Sequence[Edge], surface: BodySurface) -> Point:
     return (float(moved[0]), float(moved[1])) if touches else (0.0, 0.0)
 
 
-def approached(zones: Mapping[str, BodyZone], edges: Mapping[str, Edge]) -> Iterator[tuple[str, BodyZone]]:
-    """Zones of bodies that touch other elastic ones, moved there as drawn: by name, with all edges by name.
+def approached(zones: Mapping[str, BodyZone]) -> dict[str, BodyZone]:
+    """Zones of bodies that touch other elastic ones, moved there as drawn."""
+    touching = {name: zone.surface for name, zone in zones.items() if zone.surface.first}
+    ways: dict[str, Point] = {}
+    for signs in moved_together(touching):
+        pairs = [_sides(touching[name])[:: int(sign)] for name, sign in signs.items()]
+        first, second = (tuple(dict.fromkeys(edge for pair in pairs for edge in pair[i])) for i in (0, 1))
+        x, y = approach(first, replace(touching[next(iter(signs))], edges=second, nearest={}))
+        ways |= {name: (sign * x, sign * y) for name, sign in signs.items()}
+    return after(zones, ways)
+
+
+def after(zones: Mapping[str, BodyZone], ways: Mapping[str, Point]) -> dict[str, BodyZone]:
+    """Zones whose pairs are those after displacements [L] of the other bodies, by name of the zone."""
+    found = {name: replace(zones[name].surface, approach=way) for name, way in ways.items()}
+    return {name: replace(zone, surface=found.get(name, zone.surface)) for name, zone in zones.items()}
+
+
+def moved_together(surfaces: Mapping[str, BodySurface]) -> Iterator[dict[str, float]]:
+    """Names of contacts between elastic bodies that are moved by one displacement, with its sign in each.
 
     What one contact states, several may state, each with some of the edges, whichever side is the first: so all that
-    meet on both bodies are moved by one displacement.
+    meet on both bodies belong together.
     """
-    sides = {
-        name: (tuple(edges[edge] for edge in zone.edges), zone.surface.edges)
-        for name, zone in zones.items()
-        if zone.surface.first
-    }
-    moved: dict[str, Point] = {}
-    for name, (own, other) in sides.items():
-        if name in moved:
-            continue
-        group, signs = {name: (own, other)}, {name: 1.0}
-        for _ in sides:
-            for more, pair in sides.items():
-                for sign, (one, two) in ((1.0, pair), (-1.0, pair[::-1])):
-                    met = (_meet(one, its) and _meet(two, theirs) for its, theirs in group.values())
-                    if more not in group and any(met):
-                        group[more], signs[more] = (one, two), sign
-        first, second = (tuple(dict.fromkeys(edge for pair in group.values() for edge in pair[i])) for i in (0, 1))
-        x, y = approach(first, replace(zones[name].surface, edges=second, nearest={}))
-        moved |= {each: (sign * x, sign * y) for each, sign in signs.items()}
-    for name, zone in zones.items():
-        yield name, replace(zone, surface=replace(zone.surface, approach=moved.get(name, (0.0, 0.0))))
+    left = dict.fromkeys(surfaces)
+    while left:
+        signs = {next(iter(left)): 1.0}
+        for _ in left:
+            for more, surface in surfaces.items():
+                for sign in (1.0, -1.0):
+                    mine, its = _sides(surface)[:: int(sign)]
+                    pairs = (_sides(surfaces[name])[:: int(other)] for name, other in signs.items())
+                    if more not in signs and any(_meet(mine, one) and _meet(its, two) for one, two in pairs):
+                        signs[more] = sign
+        for name in signs:
+            left.pop(name, None)
+        yield signs
+
+
+def _sides(surface: BodySurface) -> tuple[tuple[Edge, ...], tuple[Edge, ...]]:
+    """Edges of both elastic bodies."""
+    return surface.first, surface.edges
 
 
 def _meet(edges: Sequence[Edge], others: Sequence[Edge]) -> bool:

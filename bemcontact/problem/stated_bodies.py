@@ -9,7 +9,7 @@ from pydantic import Field, PrivateAttr
 
 from bemcontact.checks.arguments import text_of_argument
 from bemcontact.errors import Issue, KeyPath, ProblemError
-from bemcontact.problem.approach import approached
+from bemcontact.problem.approach import after, approached
 from bemcontact.problem.bodies import (
     SEPARATOR,
     BodyContact,
@@ -31,7 +31,7 @@ from bemcontact.problem.load_case import LoadCase
 from bemcontact.problem.material import Material
 from bemcontact.problem.pairing import OppositePart, opposite_parts
 from bemcontact.problem.units import Units
-from bemcontact.problem.validation import Name, SpecModel, Text, Title, left_out
+from bemcontact.problem.validation import Name, Point, SpecModel, Text, Title, left_out
 from bemcontact.problem.visibility import edges_that_see, zone_edges
 
 REACH = 0.03
@@ -191,7 +191,7 @@ class StatedBodies(SpecModel):
         if not self._zones:
             self._zones.update(self.contact_zones)
             of_contacts = {name: self._zone_of(item.between, item.gap) for name, item in self.contacts.items()}
-            self._zones.update(approached(of_contacts, {edge.name: edge for edge in self.edges}))
+            self._zones.update(approached(of_contacts))
         return self._zones
 
     @property
@@ -199,7 +199,7 @@ class StatedBodies(SpecModel):
         """The bonded interfaces, each as a zone of the first body on the surface of the second one."""
         if len(self._bonds) < len(self.bonded):
             of_bonds = {name: self._zone_of(sides, 0.0) for name, sides in self.bonded.items()}
-            self._bonds.update(approached(of_bonds, {edge.name: edge for edge in self.edges}))
+            self._bonds.update(approached(of_bonds))
         return self._bonds
 
     def _zone_of(self, between: tuple[Sequence[str], Sequence[str]], gap: float) -> BodyZone:
@@ -280,6 +280,14 @@ class StatedBodies(SpecModel):
             problem._zones = {**self.contact_zones, **kept}
             problem._opposite = other._opposite
         problem._bonds = dict(other.bonds)
+        return problem
+
+    def after_motions(self, motions: Mapping[str, Point]) -> Self:
+        """Copy with pairs after displacements [L] of the second body beside the first one, by name of the contact."""
+        problem = self.model_copy()
+        zones = {name: zone for name, zone in self.zones.items() if isinstance(zone, BodyZone)}
+        problem._zones = {**self.zones, **after(zones, motions)}
+        problem._opposite = {name: parts for name, parts in self._opposite.items() if name not in motions}
         return problem
 
     def opposite_edges(self, contact: str) -> tuple[str, ...]:

@@ -374,19 +374,6 @@ def test_a_body_that_moves_into_another_one_is_found_also_when_it_is_inside(way)
     assert "'block'" in result.penetration.words
 
 
-@pytest.mark.parametrize(("hole", "holds"), [(1.02, True), (1.1, False)])
-def test_a_pin_that_moves_to_another_side_of_its_hole_is_told(hole, holds):
-    """It is drawn at the left, and lies at the bottom: its peak is off by more than 5 % in the larger hole."""
-    rim = {"name": "rim", "kind": "arc", "center": [1 - hole, 0], "radius": 1, "angles": [90, 450]}
-    weight = {"loads": {"gravity": {"density": 1.0, "acceleration": [0, -1.0]}}}
-    plate = {**block((-4, 4), (-4, 4)), "holes": [[circle("bore", hole, start=90, hole=True)]]}
-    bodies = {"pin": elastic({"outer": [rim]}, **weight), "plate": elastic(plate, HELD)}
-    result = bemcontact.solve(problem(bodies, 0.05, c=["pin/rim", "plate/bore"]))
-    assert result.holds is holds
-    told = [*result.notes, result.penetration.words if result.penetration else ""]
-    assert any("other points are opposite to each other" in item for item in told)
-
-
 def test_many_motions_that_are_held_at_zero_have_one_note():
     """Disks on a block, each of which may spin."""
     disks = {

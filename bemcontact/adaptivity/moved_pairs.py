@@ -1,0 +1,161 @@
+"""Pairs of two elastic bodies after their motion, as of a pin that is drawn elsewhere in its hole than it comes to lie.
+
+Pairs are first those of bodies that touch as drawn. Where the solution moves them beside this, other places are
+opposite to each other, and along a curved boundary the gaps of pairs are off by the motion over its radius. So pairs
+are formed once more after the motion, until they rest.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from bemcontact.adaptivity.fields import Solved, solved_state
+from bemcontact.arrays import Array
+from bemcontact.bem.body import Body
+from bemcontact.bem.condense import Condenser
+from bemcontact.bem.symmetry import symmetry_lines
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.errors import ProblemError, SingularSystemError, SolverError
+from bemcontact.problem.approach import moved_together
+from bemcontact.problem.body_surface import BodySurface
+from bemcontact.problem.edge_places import curvatures, nearest_on, places_at
+from bemcontact.problem.problem import Problem
+from bemcontact.problem.validation import Point
+
+RESTING = 0.05
+"""Part of the accuracy by which the peak pressure may change with the pairs."""
+LEAST_ASKED = 0.01
+"""Accuracy that is meant, unless a smaller one is asked for."""
+AS_A_WHOLE = 2.0
+"""Motion over its differences within contact from which bodies move as a whole: it is 1 in the contact of Hertz."""
+ROUND_OFF = 1e-9
+"""Distance of two lines of symmetry over the size of the bodies, up to which they are one."""
+MOST_STEPS = 5
+"""Steps in which the pairs have to come to rest."""
+SLOWEST = 0.5
+"""Largest ratio of two changes of the pairs: a body that nothing holds moves on and on."""
+
+
+def with_resting_pairs(answer: Solved, condenser: Condenser) -> Solved:
+    """The answer with the pairs after the motion of its bodies; as it is if these rest already, or never come to rest.
+
+    Load cases that share a condensation share its pairs, so these stay as they are.
+    """
+    found, last = answer, np.inf
+    for _ in range(MOST_STEPS):
+        problem, change = after_motion(found)
+        asked = min(LEAST_ASKED, problem.asked_accuracy or LEAST_ASKED)
+        if change <= RESTING * asked:
+            return found
+        if change > SLOWEST * last:
+            break
+        last = change
+        try:
+            found = solved_state(condenser(problem))
+        except (ProblemError, SingularSystemError, SolverError):
+            break
+    return answer
+
+
+def may_move(problem: Problem) -> bool:
+    """Whether the problem has pairs of elastic bodies, and no load cases that share them."""
+    return bool(_pairs(problem)) and (problem.case is not None or not problem.load_cases)
+
+
+def _pairs(problem: Problem) -> dict[str, BodySurface]:
+    """Surfaces of elastic bodies that others touch, by name of the contact."""
+    surfaces = {name: zone.surface for name, zone in problem.zones.items()}
+    return {name: it for name, it in surfaces.items() if isinstance(it, BodySurface) and it.first}
+
+
+def after_motion(answer: Solved) -> tuple[Problem, float]:
+    """The problem with pairs after the motion of the bodies, and the largest part by which that may change a peak.
+
+    Followed are the components that are large beside the differences within contact: others are deformations, as all
+    motion across a line of symmetry is.
+    """
+    problem = answer.body.problem
+    if not may_move(problem):
+        return problem, 0.0
+    (case,), ways, change = answer.answers, dict[str, Point](), 0.0
+    moved = motions_of_pairs(answer.body, case.condensation.contact, case.solution.pressure, case.displacement)
+    for name, motion in moved.items():
+        surface = _pairs(problem)[name]
+        step = motion.beside(surface)
+        step[abs(step) <= AS_A_WHOLE * motion.spread] = 0.0
+        step[_axes_of_symmetry(answer.body, name)] = 0.0
+        x, y = np.add(surface.approach, step).tolist()
+        ways[name], change = (x, y), max(change, motion.bend * float(np.hypot(*step)) / 2)
+    return problem.after_motions(ways), change
+
+
+def _axes_of_symmetry(body: Body, contact: str) -> list[int]:
+    """Axes 0 and 1 across which both bodies of a contact end at one line of symmetry."""
+    names = [part.name for part in body.problem.parts]
+    of_bodies = [
+        {(line.axis, line.outward): line.place for line in symmetry_lines(body.problem, body.mesh.parts[number].mesh)}
+        for number in map(names.index, body.problem.touching_bodies(contact))
+    ]
+    one, other = of_bodies[0], of_bodies[-1]
+    same = ROUND_OFF * body.mesh.size
+    return [axis for (axis, out), at in one.items() if abs(other.get((axis, out), np.inf) - at) <= same]
+
+
+class PairMotion(NamedTuple):
+    """Motion of the second of two elastic bodies beside the first one, where there is pressure.
+
+    Parameters
+    ----------
+    mean : (2,) displacement less the stated gap [L]
+    spread : (2,) root mean square of its differences from the mean [L]
+    bend : curvature of both sides at the peak [1/L], in proportion to their part in common normals
+    """
+
+    mean: Array
+    spread: Array
+    bend: float
+
+    def beside(self, surface: BodySurface) -> Array:
+        """Motion (2,) [L] beside the way after which pairs were formed."""
+        return self.mean - surface.approach
+
+    def change_of_peak(self, surface: BodySurface) -> float:
+        """Part by which a peak may be off.
+
+        Along a curved boundary the distances of pairs are off by the motion over its radius, and a peak by about half
+        of this: measured with pins that are drawn beside where they come to lie.
+        """
+        return self.bend * float(np.hypot(*self.beside(surface))) / 2
+
+
+def motions_of_pairs(
+    body: Body, contact: CondensedContact, pressure: Array, displacement: Array
+) -> dict[str, PairMotion]:
+    """Motions by name of each contact of two elastic bodies with pressure (n,) [p], from displacement (m, 3, 2) [L]."""
+    touching, names, at = _pairs(body.problem), [*body.problem.zones], np.zeros((len(body.mesh.nodes), 2))
+    at[body.mesh.elements] = displacement
+    other = body.points.opposite.node
+    motion = np.where((other < 0)[:, None], 0.0, at[other] - at[body.points.node])
+    gaps = np.array([touching[name].offset if name in touching else 0.0 for name in names])
+    motion -= gaps[contact.zone, None] * contact.normals
+    found = dict[str, PairMotion]()
+    for signs in moved_together(touching):
+        own, sign = [names.index(name) for name in signs], np.array([*signs.values()])
+        signed = sign[:, None] * contact.weights_by_zone[own] * pressure
+        force = abs(signed).sum()
+        if force > 0:
+            mean = (signed @ motion).sum(axis=0) / force
+            squares = (np.sign(signed)[..., None] * motion - mean) ** 2
+            spread = np.sqrt(np.einsum("kn,knd->d", abs(signed), squares) / force)
+            peak = contact.points[int(abs(signed).sum(axis=0).argmax())]
+            bend = max(_bend(touching[name], peak[None]) for name in signs)
+            found |= {name: PairMotion(each * mean, spread, bend) for name, each in signs.items()}
+    return found
+
+
+def _bend(surface: BodySurface, point: Array) -> float:
+    """Curvature [1/L] of both sides at a point (1, 2), in proportion to their part in common normals."""
+    place, pair = nearest_on(surface.first, point), surface.pairs(point)
+    other = places_at(surface.edges, pair.edge, pair.fraction)
+    own, its = float(curvatures(surface.first, place)[0]), float(curvatures(surface.edges, other)[0])
+    return surface.share * abs(own) + (1 - surface.share) * abs(its)

@@ -1,0 +1,94 @@
+"""Bodies that are drawn elsewhere than where they come to touch have the answer of those that are drawn there."""
+
+import numpy as np
+import pytest
+from known_answers import pin_in_hole
+from several_bodies import HELD, block, circle, elastic, problem
+
+import bemcontact
+from bemcontact.adaptivity.moved_pairs import RESTING
+from bemcontact.problem import Material
+from bemcontact.reference.pin_in_hole import LoosePin
+
+CLEARANCE = 0.02
+LOAD = 20 * 0.138339  # half angle 30 degrees, which depends on load over clearance
+
+
+def drawn(height: float) -> bemcontact.Problem:
+    """Half of a pin with the clearance, drawn above or below the center of its hole."""
+    spec = pin_in_hole(LOAD).replace("[0, -0.001]", f"[0, {height}]").replace("1.001", str(1 + CLEARANCE))
+    return bemcontact.loads(spec.replace("clearance: 0.001", f"clearance: {CLEARANCE}"))
+
+
+@pytest.mark.parametrize("height", [-1.0, 0.0, 1.0])
+def test_a_pin_may_be_drawn_anywhere_along_its_load(height: float):
+    """The closed form has no drawn place; 1.4 / 20² is for the size of the plate, as in `test_pin_in_hole`.
+
+    With the pairs of the pin in the middle, the peak would be off by half the clearance over the radius, 1 %.
+    """
+    steel = Material(young_modulus=1000, poisson_ratio=0.3)
+    form = LoosePin(load=LOAD, radius=1.0, clearance=CLEARANCE, pin=steel, plate=steel)
+    result = bemcontact.solve(drawn(height * CLEARANCE))
+    assert result.certified
+    assert result.footprint.peak
+    bars = {bar.quantity: bar.bar or 0.0 for bar in result.accuracy.bars}
+    assert result.footprint.peak.pressure == pytest.approx(form.peak, rel=bars["peak"] + 1.4 / 20**2)
+
+
+def in_hole(x: float, y: float, hole: float, load: tuple[float, float] = (0, -1.0)) -> bemcontact.Problem:
+    """A heavy pin of radius 1 in the hole of a plate, drawn with its center at (x, y)."""
+    rim = {"name": "rim", "kind": "arc", "center": [x, y], "radius": 1, "angles": [90, 450]}
+    weight = {"loads": {"gravity": {"density": 1.0, "acceleration": [*load]}}}
+    plate = {**block((-4, 4), (-4, 4)), "holes": [[circle("bore", hole, start=90, hole=True)]]}
+    bodies = {"pin": elastic({"outer": [rim]}, **weight), "plate": elastic(plate, HELD)}
+    return problem(bodies, 0.01, c=["pin/rim", "plate/bore"])
+
+
+@pytest.mark.parametrize("way", [(-1, 0), (0, 0), (0.6, 0.8)])
+@pytest.mark.parametrize("clearance", [0.02, 0.1])
+def test_a_pin_may_be_drawn_at_any_side_of_its_hole(way: tuple[float, float], clearance: float):
+    """It comes to lie at the bottom. A peak rests to a twentieth of the accuracy asked, in both."""
+    x, y = clearance * np.array(way)
+    drawn_there, elsewhere = (
+        bemcontact.solve(in_hole(*at, 1 + clearance)) for at in ((0.0, -clearance), (float(x), float(y)))
+    )
+    bars = sum(bar.bar or 0.0 for it in (drawn_there, elsewhere) for bar in it.accuracy.bars if bar.quantity == "peak")
+    peaks = [it.footprint.peak.pressure for it in (drawn_there, elsewhere) if it.footprint.peak]
+    assert peaks[1] == pytest.approx(peaks[0], rel=2 * RESTING * 0.01 + bars)
+    assert elsewhere.holds
+
+
+@pytest.mark.parametrize("clearance", [1e-3, 1e-5, 1e-8])
+def test_joints_that_are_nearly_opposite_to_each_other(clearance: float):
+    """Elements that end at both are short, and grow from there: else the compliance is not definite any more.
+
+    The first element of a pin is opposite to the last one of its hole over the clearance.
+    """
+    result = bemcontact.solve(in_hole(-clearance, 0, 1 + clearance, load=(-1.0, 0)))
+    assert result.holds
+    assert result.certificate.smallest_eigenvalue
+    assert result.certificate.smallest_eigenvalue > 0.01
+
+
+def test_a_path_has_the_pairs_of_its_end():
+    """So its end is the answer to the problem there."""
+    spec = in_hole(0, 0, 1.02)
+    followed = bemcontact.follow(spec, "bodies.pin.loads.gravity.density", 1.0, start=0.8)
+    result = bemcontact.solve(spec)
+    assert result.footprint.peak
+    bars = sum(it.bar or 0.0 for it in result.accuracy.bars if it.quantity == "peak")
+    assert followed.path.at(1.0).pressure.max() == pytest.approx(result.footprint.peak.pressure, rel=2 * bars)
+    assert followed.holds
+
+
+@pytest.mark.parametrize(("clearance", "holds"), [(0.03, True), (0.12, False)])
+def test_load_cases_that_share_their_pairs_say_what_that_changes(clearance: float, holds: bool):
+    """A peak is off by half the clearance over the radius: 1.5 % is noted, and from 5 % on the result is withheld."""
+    lighter, heavier = (
+        {"bodies": {"pin": {"gravity": {"density": density, "acceleration": [0, -1]}}}} for density in (0.1, 0.2)
+    )
+    spec = in_hole(0, 0, 1 + clearance).with_value("load_cases", {"lighter": lighter, "heavier": heavier})
+    for result in bemcontact.solve_cases(spec).results.values():
+        assert result.holds is holds
+        told = [*result.notes, result.penetration.words if result.penetration else ""]
+        assert any("points opposite to each other were found" in words for words in told)
