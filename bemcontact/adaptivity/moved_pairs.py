@@ -44,8 +44,7 @@ def with_resting_pairs(answer: Solved, condenser: Condenser) -> Solved:
     found, last = answer, np.inf
     for _ in range(MOST_STEPS):
         problem, change = after_motion(found)
-        asked = min(LEAST_ASKED, problem.asked_accuracy or LEAST_ASKED)
-        if change <= RESTING * asked:
+        if not change:
             return found
         if change > SLOWEST * last:
             break
@@ -81,11 +80,13 @@ def after_motion(answer: Solved) -> tuple[Problem, float]:
     moved = motions_of_pairs(answer.body, case.condensation.contact, case.solution.pressure, case.displacement)
     for name, motion in moved.items():
         surface = _pairs(problem)[name]
-        step = motion.beside(surface)
+        step = motion.mean - surface.approach
         step[abs(step) <= AS_A_WHOLE * motion.spread] = 0.0
         step[_axes_of_symmetry(answer.body, name)] = 0.0
-        x, y = np.add(surface.approach, step).tolist()
-        ways[name], change = (x, y), max(change, motion.bend * float(np.hypot(*step)) / 2)
+        of_peak = motion.change_of_peak(step)
+        if of_peak > RESTING * min(LEAST_ASKED, problem.asked_accuracy or LEAST_ASKED):
+            x, y = np.add(surface.approach, step).tolist()
+            ways[name], change = (x, y), max(change, of_peak)
     return problem.after_motions(ways), change
 
 
@@ -108,24 +109,20 @@ class PairMotion(NamedTuple):
     ----------
     mean : (2,) displacement less the stated gap [L]
     spread : (2,) root mean square of its differences from the mean [L]
-    bend : curvature of both sides at the peak [1/L], in proportion to their part in common normals
+    bends : (2, 2) vectors [1/L] along and across the normal at the peak, as long as the curvature that counts
     """
 
     mean: Array
     spread: Array
-    bend: float
+    bends: Array
 
-    def beside(self, surface: BodySurface) -> Array:
-        """Motion (2,) [L] beside the way after which pairs were formed."""
-        return self.mean - surface.approach
-
-    def change_of_peak(self, surface: BodySurface) -> float:
-        """Part by which a peak may be off.
+    def change_of_peak(self, step: Array) -> float:
+        """Part by which a peak is off if pairs are off by a motion (2,) [L].
 
         Along a curved boundary the distances of pairs are off by the motion over its radius, and a peak by about half
         of this: measured with pins that are drawn beside where they come to lie.
         """
-        return self.bend * float(np.hypot(*self.beside(surface))) / 2
+        return float(np.hypot(*(self.bends @ step))) / 2
 
 
 def motions_of_pairs(
@@ -148,14 +145,22 @@ def motions_of_pairs(
             squares = (np.sign(signed)[..., None] * motion - mean) ** 2
             spread = np.sqrt(np.einsum("kn,knd->d", abs(signed), squares) / force)
             peak = contact.points[int(abs(signed).sum(axis=0).argmax())]
-            bend = max(_bend(touching[name], peak[None]) for name in signs)
-            found |= {name: PairMotion(each * mean, spread, bend) for name, each in signs.items()}
+            found |= {
+                name: PairMotion(each * mean, spread, _bends(touching[name], peak[None]))
+                for name, each in signs.items()
+            }
     return found
 
 
-def _bend(surface: BodySurface, point: Array) -> float:
-    """Curvature [1/L] of both sides at a point (1, 2), in proportion to their part in common normals."""
+def _bends(surface: BodySurface, point: Array) -> Array:
+    """Vectors (2, 2) [1/L] at a point (1, 2), as of `PairMotion`.
+
+    Along the normal the curvatures of both sides count in proportion to their part in common normals. Across it the
+    smaller one counts: what slides along a flat side keeps its distances.
+    """
     place, pair = nearest_on(surface.first, point), surface.pairs(point)
     other = places_at(surface.edges, pair.edge, pair.fraction)
-    own, its = float(curvatures(surface.first, place)[0]), float(curvatures(surface.edges, other)[0])
-    return surface.share * abs(own) + (1 - surface.share) * abs(its)
+    own, its = abs(curvatures(surface.first, place)[0]), abs(curvatures(surface.edges, other)[0])
+    x, y = pair.normals[0]
+    both = surface.share * own + (1 - surface.share) * its
+    return np.array([[x, y], [-y, x]]) * np.array([[both], [min(own, its)]])

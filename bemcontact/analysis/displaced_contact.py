@@ -53,7 +53,9 @@ def displaced(
         ridge = (np.hypot(*(face - contact.normals[own]).T) > ALIKE) & (along > STEEP)
         other = ~ridge & (np.sum(there.normals * face, axis=-1) < SAME_FACE)
         beyond = there.gap / np.where(ridge, along, 1.0) - linear[own]
-        found.motion[own] -= gaps.tool_motion(zone, at[own], paired=True)
+        other_body = points.opposite.node[own]
+        across = _at_nodes(gaps, points)[other_body]
+        found.motion[own] -= np.where((other_body < 0)[:, None], gaps.tool_motion(zone, at[own]), across)
         tip = gaps.beside_groove(zone, at[own], np.hypot(*found.motion[own].T))
         grooved = (beyond < 0) & (tip | (other & isinstance(gaps.surfaces[zone], Polyline)))
         turned = np.where(ridge[:, None], face, there.normals)

@@ -146,9 +146,12 @@ def _pairs_changed(
     said = list[str]()
     for zone, found in motions_of_pairs(body, contact, solution.pressure, gaps.state.displacement).items():
         surface = gaps.surfaces[zone]
-        if not isinstance(surface, BodySurface) or found.change_of_peak(surface) < noted(gaps.problem):
+        if not isinstance(surface, BodySurface):
             continue
-        part, motion = found.change_of_peak(surface), -found.beside(surface)
+        motion = np.subtract(surface.approach, found.mean)
+        part = found.change_of_peak(motion)
+        if part < noted(gaps.problem):
+            continue
         words = (
             f"both sides of '{zone}' move by {_vector(motion, gaps.problem.units.length)} beside the places for which "
             "points opposite to each other were found: others are opposite then, and the peak pressure may be off by "

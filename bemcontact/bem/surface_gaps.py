@@ -15,7 +15,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
-from bemcontact.bem.contact_points import ALIKE
+from bemcontact.bem.contact_points import ALIKE, SMOOTH
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import NODES, Outline
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -173,7 +173,7 @@ class SurfaceGaps:
         faces = self.surfaces[zone].faces(flat, inward, np.zeros(len(flat)))
         gap, normals, lies = (part[:, 0].reshape(at.points.shape[:-1] + part.shape[2:]) for part in faces)
         gap[:, NODES], normals[:, NODES], lies[:, NODES] = (part[elements] for part in held)
-        moved = self._displacement[elements] - self.tool_motion(zone, at.points, paired=True)
+        moved = self._displacement[elements] - self.tool_motion(zone, at.points, at.inward)
         return Faces(gap + np.sum(normals * moved, axis=-1), normals, lies)
 
     def exact(self, zone: str, moved: Array) -> Closest:
@@ -206,17 +206,17 @@ class SurfaceGaps:
         """Distance (...) [L] of points (..., 2) from the undisplaced surface, and the normals there."""
         return _closest(self.surfaces[zone], points)
 
-    def tool_motion(self, zone: str, points: Array, *, paired: bool = False) -> Array:
+    def tool_motion(self, zone: str, points: Array, inward: Array | None = None) -> Array:
         """Displacement (..., 2) [L] of a surface at points (..., 2): that of its tool, or of the other elastic body.
 
-        Of the latter at the nearest places, or where they form pairs with the points.
+        Of the latter at the nearest places, or at the pairs of points with normals `inward` (..., 2) into their body.
         """
-        return self._motion_of(zone, self.surfaces[zone], points, paired=paired)
+        return self._motion_of(zone, self.surfaces[zone], points, inward)
 
-    def _motion_of(self, zone: str, surface: AnyShape, points: Array, *, paired: bool = False) -> Array:
+    def _motion_of(self, zone: str, surface: AnyShape, points: Array, inward: Array | None = None) -> Array:
         """Displacement (..., 2) [L] of the surface of a zone, or of one that goes on from it, as of `tool_motion`."""
         if isinstance(surface, BodySurface) and surface.elastic:
-            return self._motion_of_body(surface, points, paired=paired)
+            return self._motion_of_body(surface, points, inward)
         for name, tool in self.problem.tools.items():
             if zone in tool.zones:
                 x, y, turn = self.tools[name]
@@ -231,9 +231,10 @@ class SurfaceGaps:
             return self.tool_motion(zone, normals) - self.tool_motion(zone, np.zeros((1, 2)))
         return self._turn_of(surface, points, normals)
 
-    def _motion_of_body(self, surface: BodySurface, points: Array, *, paired: bool = False) -> Array:
+    def _motion_of_body(self, surface: BodySurface, points: Array, inward: Array | None = None) -> Array:
         """Displacement (..., 2) [L] of an elastic body at places opposite to points (..., 2)."""
-        feet = (surface.pairs if paired else surface.feet)(points.reshape(-1, 2))
+        flat = points.reshape(-1, 2)
+        feet = surface.feet(flat) if inward is None else surface.pairs(flat, inward.reshape(-1, 2))
         element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)
         values = np.einsum("ki,kix->kx", reference_element.values(xi), self.state.displacement[element])
         return values.reshape(points.shape)
@@ -296,6 +297,7 @@ class SurfaceGaps:
         dip = np.maximum(-np.sum(shapes * np.where(self._same(zone, here), nodes, 0.0), axis=2), 0.0) * touching
         other = np.sum(here.faces * there.normals, axis=-1) < SAME_FACE
         beyond = other & (-there.gap > self.second_order(zone)) & ~self._beside_corner(zone, elements)
+        beyond &= ~self._beside_own_corner(zone, elements)
         return np.maximum(-here.gap - dip, np.where(beyond, -there.gap, -np.inf))
 
     def _beside_corner(self, zone: str, elements: IntArray) -> BoolArray:
@@ -315,6 +317,20 @@ class SurfaceGaps:
         if isinstance(surface, Polyline):
             return beside & (moved <= LITTLE * self.problem.size)
         return beside | self.beside_groove(zone, places, moved)
+
+    def _beside_own_corner(self, zone: str, elements: IntArray) -> BoolArray:
+        """Whether places (k, q) are nearer than they move to a convex corner of their body, with the zone on both sides.
+
+        There they are judged on the other face.
+        """
+        places, mesh = self.outline.sampled(elements).points, self.outline.mesh
+        moved = np.hypot(*np.moveaxis(self._displacement[elements] - self.tool_motion(zone, places), 2, 0))
+        beside = np.zeros(moved.shape, bool)
+        for node, beyond in ((mesh.elements[elements, 0], mesh.before[elements]), (mesh.elements[elements, 2],) * 2):
+            turns = self.paired[zone][beyond] & (mesh.turns[node] < -SMOOTH)
+            near = np.hypot(*np.moveaxis(places - mesh.nodes[node][:, None], 2, 0)) <= moved
+            beside |= turns[:, None] & near
+        return beside
 
     def beside_groove(self, zone: str, places: Array, moved: Array) -> BoolArray:
         """Whether a little motion (...) [L] takes places (...) in a concave corner of a body to its other face."""

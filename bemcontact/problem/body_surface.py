@@ -172,12 +172,13 @@ class BodySurface:
         feet = self.feet(points)
         flush = ROUND_OFF * max(edge.length for edge in (*self.first, *self.edges))
         on_first = np.hypot(*(points + moved - first.points).T) <= flush
-        at = np.flatnonzero(on_first & (np.sum(own_normals * feet.normals, axis=1) > 0))
-        nearest = EdgePlaces(feet.edge[at], feet.fraction[at], feet.points[at], feet.normals[at])
+        start, away = self._facing(points, own_normals, feet)
+        at = np.flatnonzero(on_first & (np.sum(own_normals * start.normals, axis=1) > 0))
+        nearest, away = EdgePlaces(*(part[at] for part in start)), away[at]
         places, normals, paired = paired_on(self.edges, nearest, points[at], own_normals[at], self._weights)
-        at = at[paired]
-        gap, beside = np.sum((points[at] - places.points) * normals, axis=1), places.points - feet.points[at]
-        near = np.hypot(*beside.T) <= WIDEST * (abs(feet.gap[at]) + flush)
+        at, away = at[paired], away[paired]
+        gap, beside = np.sum((points[at] - places.points) * normals, axis=1), places.points - start.points[at]
+        near = np.hypot(*beside.T) <= WIDEST * (abs(away) + flush)
         own, other = curvatures(self.first, first)[at], curvatures(self.edges, places)
         near &= np.sum(own_normals[at] * places.normals, axis=1) > STEEPEST + TIE
         # otherwise common normals cross on the way
@@ -187,6 +188,27 @@ class BodySurface:
         common, distance, corner = feet.normals.copy(), feet.gap.copy(), np.ones(len(points), bool)
         common[at], distance[at], corner[at] = normals, gap, ~near
         return Feet(edge, fraction, foot, distance + common @ moved, common, corner, feet.at_corner)
+
+    def _facing(self, points: Array, inward: Array, feet: Feet) -> tuple[EdgePlaces, Array]:
+        """Places near to the pairs of points (k, 2), and the distances (k,) as drawn [L].
+
+        They are the feet, but in a concave corner the nearest place may be on the face beside the points: then it is
+        the nearest one of those that face the normals `inward` (k, 2) into the body of the points, if there is any.
+        """
+        edge, fraction, places, normals = (
+            part.copy() for part in (feet.edge, feet.fraction, feet.points, feet.normals)
+        )
+        gap = feet.gap.copy()
+        astray = np.flatnonzero(np.sum(inward * normals, axis=1) <= 0)
+        least = np.full(len(astray), np.inf)
+        for number in range(len(self.edges) if len(astray) else 0):
+            there = nearest_on(self.edges[number : number + 1], points[astray])
+            offset = points[astray] - there.points
+            nearer = (np.sum(inward[astray] * there.normals, axis=1) > STEEPEST + TIE) & (np.hypot(*offset.T) < least)
+            at, least = astray[nearer], np.where(nearer, np.hypot(*offset.T), least)
+            edge[at], fraction[at], places[at] = number, there.fraction[nearer], there.points[nearer]
+            normals[at], gap[at] = there.normals[nearer], np.sum(offset * there.normals, axis=1)[nearer]
+        return EdgePlaces(edge, fraction, places, normals), gap
 
     def seen_from(self, edge: Edge) -> Array:
         """Fractions of an edge of the first side inside it, at the pairs of the ends and inner places of all edges.

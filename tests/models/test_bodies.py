@@ -43,9 +43,10 @@ def test_the_reference_of_the_cantilevers_is_beam_theory():
 
 @pytest.mark.parametrize("length", [100.0, 70.0, 50.0])
 def test_cantilevers_share_their_load_as_beams_do(length: float):
-    """With clamps nearer to the nose, the upper one is 10, 7 and 5 heights h long. Beam theory is off by 0.15 (h/l)².
+    """With clamps nearer to the nose, the upper one is 10, 7 and 5 heights h long. Beam theory is off by 0.17 (h/l)².
 
-    The rest is the error bar. Shear changes the force by 0.2 to 0.7 %, which is about as much as theory is off.
+    This is of the order of what it leaves out, and was measured at l = 5 h with an accuracy of 0.1 %, by two meshes. The
+    rest is the error bar. Shear changes the force by 0.2 to 0.7 %, which is about as much as theory is off.
     """
     problem = bemcontact.load(FOLDER / "two_cantilevers.yaml")
     upper, lower = "bodies.upper.boundary.outer", "bodies.lower.boundary.outer"
@@ -60,4 +61,4 @@ def test_cantilevers_share_their_load_as_beams_do(length: float):
     bar = next(bar.bar for bar in result.accuracy.bars if bar.quantity == "force")
     assert bar is not None
     force = 1.4 * compliance(length, 10) / (compliance(length, 10) + compliance(length, 8))
-    assert result.footprint.forces["tips"][1] == pytest.approx(force, rel=0.15 * (10 / length) ** 2 + bar)
+    assert result.footprint.forces["tips"][1] == pytest.approx(force, rel=0.17 * (10 / length) ** 2 + bar)
