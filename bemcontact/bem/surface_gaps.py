@@ -319,7 +319,7 @@ class SurfaceGaps:
         return beside | self.beside_groove(zone, places, moved)
 
     def _beside_own_corner(self, zone: str, elements: IntArray) -> BoolArray:
-        """Whether places (k, q) are nearer than they move to a convex corner of their body, with the zone on both sides.
+        """Whether places (k, q) are nearer than they move to a convex corner of their body inside the zone.
 
         There they are judged on the other face.
         """

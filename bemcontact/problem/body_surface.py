@@ -174,11 +174,11 @@ class BodySurface:
         on_first = np.hypot(*(points + moved - first.points).T) <= flush
         start, away = self._facing(points, own_normals, feet)
         at = np.flatnonzero(on_first & (np.sum(own_normals * start.normals, axis=1) > 0))
-        nearest, away = EdgePlaces(*(part[at] for part in start)), away[at]
+        nearest = EdgePlaces(start.edge[at], start.fraction[at], start.points[at], start.normals[at])
         places, normals, paired = paired_on(self.edges, nearest, points[at], own_normals[at], self._weights)
-        at, away = at[paired], away[paired]
+        at = at[paired]
         gap, beside = np.sum((points[at] - places.points) * normals, axis=1), places.points - start.points[at]
-        near = np.hypot(*beside.T) <= WIDEST * (abs(away) + flush)
+        near = np.hypot(*beside.T) <= WIDEST * (abs(away[at]) + flush)
         own, other = curvatures(self.first, first)[at], curvatures(self.edges, places)
         near &= np.sum(own_normals[at] * places.normals, axis=1) > STEEPEST + TIE
         # otherwise common normals cross on the way
@@ -195,10 +195,8 @@ class BodySurface:
         They are the feet, but in a concave corner the nearest place may be on the face beside the points: then it is
         the nearest one of those that face the normals `inward` (k, 2) into the body of the points, if there is any.
         """
-        edge, fraction, places, normals = (
-            part.copy() for part in (feet.edge, feet.fraction, feet.points, feet.normals)
-        )
-        gap = feet.gap.copy()
+        edge, fraction, gap = feet.edge.copy(), feet.fraction.copy(), feet.gap.copy()
+        places, normals = feet.points.copy(), feet.normals.copy()
         astray = np.flatnonzero(np.sum(inward * normals, axis=1) <= 0)
         least = np.full(len(astray), np.inf)
         for number in range(len(self.edges) if len(astray) else 0):

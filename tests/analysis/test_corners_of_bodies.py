@@ -2,8 +2,9 @@
 
 import math
 
+import numpy as np
 import pytest
-from several_bodies import HELD, block, elastic, polygon, problem, rigid
+from several_bodies import GUIDED, HELD, block, elastic, polygon, problem, rigid
 
 import bemcontact
 
@@ -95,3 +96,22 @@ def test_a_block_that_slides_off_one_of_the_same_width_does_not_hold(order):
     assert not result.holds
     assert result.penetration is not None
     assert "no surface" in result.penetration.words
+
+
+@pytest.mark.parametrize("pressure", [1.0, 20.0])
+def test_a_hook_reaches_around_a_block(pressure: float):
+    """Beside the corner of the hook, the side of the block faces the finger, though the face above is nearer.
+
+    So both orders have the same pairs, and the same forces but for the meshes: each is sure to its error bar.
+    """
+    finger = polygon(
+        under=(0, 0), inner=(4.01, 0), tip=(4.01, -3), outer=(5.01, -3), top=(5.01, 2), left=(0, 2)
+    )  # fmt: skip
+    bodies = {
+        "hook": elastic(finger, {**GUIDED, "top": {"pressure": pressure}}),
+        "block": elastic(block((0, 4), (-4, 0)), {**GUIDED, "bottom": {"displacement": {"y": 0}}}),
+    }
+    one, other = (bemcontact.solve(problem(bodies, 0.01, c=pair)) for pair in (["hook", "block"], ["block", "hook"]))
+    assert one.holds
+    assert other.holds
+    assert np.negative(one.footprint.forces["c"]) == pytest.approx(other.footprint.forces["c"], rel=1e-3, abs=1e-3)

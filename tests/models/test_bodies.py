@@ -45,8 +45,8 @@ def test_the_reference_of_the_cantilevers_is_beam_theory():
 def test_cantilevers_share_their_load_as_beams_do(length: float):
     """With clamps nearer to the nose, the upper one is 10, 7 and 5 heights h long. Beam theory is off by 0.17 (h/l)².
 
-    This is of the order of what it leaves out, and was measured at l = 5 h with an accuracy of 0.1 %, by two meshes. The
-    rest is the error bar. Shear changes the force by 0.2 to 0.7 %, which is about as much as theory is off.
+    This is of the order of what it leaves out, and was measured at l = 5 h with an accuracy of 0.1 %, by two meshes.
+    The rest is the error bar. Shear changes the force by 0.2 to 0.7 %, which is about as much as theory is off.
     """
     problem = bemcontact.load(FOLDER / "two_cantilevers.yaml")
     upper, lower = "bodies.upper.boundary.outer", "bodies.lower.boundary.outer"
