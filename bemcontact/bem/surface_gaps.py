@@ -213,6 +213,12 @@ class SurfaceGaps:
         """
         return self._motion_of(zone, self.surfaces[zone], points, inward)
 
+    def _against(self, zone: str, elements: IntArray) -> Array:
+        """Displacement (k, q, 2) [L] of elements (k,) beside that of the surface, where they come to touch it."""
+        surface, places = self.surfaces[zone], self.outline.sampled(elements).points
+        way = surface.approach if isinstance(surface, BodySurface) else (0.0, 0.0)
+        return self._displacement[elements] - self.tool_motion(zone, places - np.array(way))
+
     def _motion_of(self, zone: str, surface: AnyShape, points: Array, inward: Array | None = None) -> Array:
         """Displacement (..., 2) [L] of the surface of a zone, or of one that goes on from it, as of `tool_motion`."""
         if isinstance(surface, BodySurface) and surface.elastic:
@@ -311,7 +317,7 @@ class SurfaceGaps:
         beside = np.zeros(places.shape[:-1], bool)
         if not isinstance(surface, Polyline | BodySurface):
             return beside
-        moved = np.hypot(*np.moveaxis(self._displacement[elements] - self.tool_motion(zone, places), 2, 0))
+        moved = np.hypot(*np.moveaxis(self._against(zone, elements), 2, 0))
         for corner in surface.points if isinstance(surface, Polyline) else surface.ridges:
             beside |= np.hypot(*np.moveaxis(places - corner, 2, 0)) <= moved
         if isinstance(surface, Polyline):
@@ -324,7 +330,7 @@ class SurfaceGaps:
         There they are judged on the other face.
         """
         places, mesh = self.outline.sampled(elements).points, self.outline.mesh
-        moved = np.hypot(*np.moveaxis(self._displacement[elements] - self.tool_motion(zone, places), 2, 0))
+        moved = np.hypot(*np.moveaxis(self._against(zone, elements), 2, 0))
         beside = np.zeros(moved.shape, bool)
         for node, beyond in ((mesh.elements[elements, 0], mesh.before[elements]), (mesh.elements[elements, 2],) * 2):
             turns = self.paired[zone][beyond] & (mesh.turns[node] < -SMOOTH)
@@ -357,7 +363,7 @@ class SurfaceGaps:
         before, normals = self.undeformed(zone, at.points)
         after = self.exact(zone, at.points + motion).gap
         if isinstance(self.surfaces[zone], BodySurface):  # linear: beside an end of contact places slide along it
-            against = motion - self.tool_motion(zone, at.points)
+            against = self._against(zone, elements)
             along = self._normals_beside_end(zone, at.points, against, normals)
             after = before + np.sum(along * against, axis=-1)
         turned = np.sum(at.inward * normals, axis=-1) > TURNED
@@ -376,7 +382,7 @@ class SurfaceGaps:
                 local[crossing.sample] = crossing.local
             else:
                 away = np.hypot(*np.moveaxis(at.points - crossing.place, 2, 0))
-                moved = np.hypot(*np.moveaxis(motion - self.tool_motion(zone, at.points), 2, 0))
+                moved = np.hypot(*np.moveaxis(self._against(zone, elements), 2, 0))
                 depth[~turned & (away <= BESIDE * moved)] = -np.inf
         ended = [_opposite(end, at.points - before[..., None] * normals, normals, flush) for end in ends]
         sure = depth > self.second_order(zone)
