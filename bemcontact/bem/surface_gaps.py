@@ -329,13 +329,11 @@ class SurfaceGaps:
 
         There they are judged on the other face.
         """
-        places, mesh = self.outline.sampled(elements).points, self.outline.mesh
+        mesh, paired = self.outline.mesh, self.paired[zone]
         moved = np.hypot(*np.moveaxis(self._against(zone, elements), 2, 0))
-        beside = np.zeros(moved.shape, bool)
-        for node, beyond in ((mesh.elements[elements, 0], mesh.before[elements]), (mesh.elements[elements, 2],) * 2):
-            turns = self.paired[zone][beyond] & (mesh.turns[node] < -SMOOTH)
-            near = np.hypot(*np.moveaxis(places - mesh.nodes[node][:, None], 2, 0)) <= moved
-            beside |= turns[:, None] & near
+        places, beside = self.outline.sampled(elements).points, np.zeros(moved.shape, bool)
+        for corner in np.flatnonzero(paired & paired[mesh.before] & (mesh.turns < -SMOOTH)):
+            beside |= np.hypot(*np.moveaxis(places - mesh.nodes[corner], 2, 0)) <= moved
         return beside
 
     def beside_groove(self, zone: str, places: Array, moved: Array) -> BoolArray:

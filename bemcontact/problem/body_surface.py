@@ -21,6 +21,7 @@ from bemcontact.problem.edge_places import (
     nearest_on,
     paired_on,
     places_along,
+    places_at,
 )
 from bemcontact.problem.rigid_surface import RigidSurface, Shape
 from bemcontact.problem.surface_lines import Closest, Faces, between_normals, pressed_normals, ridge_beside
@@ -195,8 +196,8 @@ class BodySurface:
         They are the feet, but in a concave corner the nearest place may be on the face beside the points: then it is
         the nearest one of those that face the normals `inward` (k, 2) into the body of the points, if there is any.
         """
-        edge, fraction, gap = feet.edge.copy(), feet.fraction.copy(), feet.gap.copy()
-        places, normals = feet.points.copy(), feet.normals.copy()
+        edge, fraction, gap, places = feet.edge.copy(), feet.fraction.copy(), feet.gap.copy(), feet.points.copy()
+        normals = places_at(self.edges, edge, fraction).normals
         astray = np.flatnonzero(np.sum(inward * normals, axis=1) <= 0)
         least = np.full(len(astray), np.inf)
         for number in range(len(self.edges) if len(astray) else 0):

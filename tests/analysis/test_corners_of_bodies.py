@@ -123,6 +123,37 @@ def test_a_block_is_drawn_apart_from_both_faces_of_a_step():
     at = block((0.01, 4.01), (0.01, 2.01))
     pushed = elastic(at, {"top": {"pressure": 1.0}, "right": {"pressure": 1.0}})
     for order in (["block", "step"], ["step", "block"]):
-        result = bemcontact.solve(problem({"block": pushed, "step": held(step)}, 0.02, c=order))
+        result = bemcontact.solve(problem({"block": pushed, "step": held(step)}, 0.05, c=order))
         assert result.holds
         assert np.abs(result.footprint.forces["c"]) == pytest.approx([2, 4], rel=1e-12)
+
+
+def test_a_tee_is_pulled_up_in_its_slot():
+    """The corners of the slot stand in those of the tee, whose shoulders hold it, whichever body is the first."""
+    slot = polygon(
+        bottom=(-6, -6), right=(6, -6), shoulder=(6, 0), neck=(1.1, 0), under=(1.1, -1), side=(3.1, -1),
+        floor=(3.1, -3), other_side=(-3.1, -3), other_under=(-3.1, -1), other_neck=(-1.1, -1), other=(-1.1, 0),
+        left=(-6, 0),
+    )  # fmt: skip
+    tee = polygon(
+        bottom=(-3, -3), side=(3, -3), shoulder=(3, -1), neck=(1, -1), top=(1, 2), other_neck=(-1, 2),
+        other_shoulder=(-1, -1), other_side=(-3, -1),
+    )  # fmt: skip
+    bodies = {"tee": elastic(tee, {"top": {"traction": {"y": 5.0}}}), "slot": held(slot)}
+    for order in (["tee", "slot"], ["slot", "tee"]):
+        result = bemcontact.solve(problem(bodies, 0.05, c=order))
+        assert result.holds
+        assert np.abs(result.footprint.forces["c"]) == pytest.approx([0, 10], abs=1e-9)
+
+
+def test_a_key_with_clearance_is_pushed_to_one_side():
+    """Both orders have the pressed side, up to the corner of the key beside that of its way."""
+    way = polygon(
+        bottom=(-5, -5), right=(5, -5), shoulder=(5, 0), wall=(1.05, 0), floor=(1.05, -1), other_wall=(-1.05, -1),
+        other=(-1.05, 0), left=(-5, 0),
+    )  # fmt: skip
+    key = elastic(block((-1, 1), (-1, 1)), {"top": {"traction": {"x": 1.0, "y": -2.0}}})
+    for order in (["key", "way"], ["way", "key"]):
+        result = bemcontact.solve(problem({"key": key, "way": held(way)}, 0.05, c=order))
+        assert result.holds
+        assert np.abs(result.footprint.forces["c"]) == pytest.approx([2, 4], rel=1e-9)
