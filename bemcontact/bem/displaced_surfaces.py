@@ -1,0 +1,124 @@
+"""Surfaces that bodies may touch, after tools and elastic bodies have displaced them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from bemcontact.arrays import Array
+from bemcontact.bem import reference_element
+from bemcontact.bem.mesh import BoundaryState
+from bemcontact.bem.outline import Outline
+from bemcontact.problem.body_surface import AnyShape, BodySurface
+from bemcontact.problem.problem import Problem
+from bemcontact.problem.rigid_surface import DeflectedContour
+from bemcontact.problem.surface_lines import Closest
+
+CHUNK = 8192
+"""Number of places whose distance from a surface is computed at a time."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DisplacedSurfaces:
+    """The surfaces of a problem by zone, with their displacement.
+
+    Parameters
+    ----------
+    problem : whose surfaces they are
+    outline : its edges
+    state : displacement of the boundary
+    tools : displacement (3,) of each tool by name: x, y [L] and rotation [rad] about its point
+    """
+
+    problem: Problem
+    outline: Outline
+    state: BoundaryState
+    tools: Mapping[str, Array]
+
+    @property
+    def surfaces(self) -> dict[str, AnyShape]:
+        """Surfaces by zone; a deflected contour has no gap at other places than the nodes of its own zone."""
+        zones = self.problem.zones.items()
+        return {name: zone.surface for name, zone in zones if not isinstance(zone.surface, DeflectedContour)}
+
+    def exact(self, zone: str, moved: Array) -> Closest:
+        """Distance (...) [L] of displaced places (..., 2) from the displaced surface, and the normals there.
+
+        The place of an elastic body that is nearest then is that to which its motion there leads back. What slides past
+        an end of the surface is opposite to the edge in which the boundary goes on smoothly.
+        """
+        surface = self.surfaces[zone]
+        surface = surface.continued if isinstance(surface, BodySurface) else surface
+        motion = self._motion_of(zone, surface, moved)
+        if isinstance(surface, BodySurface) and surface.elastic:
+            motion = self._motion_of(zone, surface, moved - motion)
+        return _closest(surface, moved - motion)
+
+    def from_other_side(self, zone: str, moved: Array) -> Closest:
+        """Distance (k,) [L] of displaced places (k, 2) of the second elastic body from the displaced first one.
+
+        The normals are those there after the motion, into the first body.
+        """
+        surface = self.surfaces[zone]
+        assert isinstance(surface, BodySurface)
+        first = surface.other_side
+        motion = self._motion_of_body(first, moved)
+        places = moved - self._motion_of_body(first, moved - motion)
+        gap, normals = first.closest(places)
+        return Closest(gap, -(normals + self._turn_of(first, places, normals)))
+
+    def undeformed(self, zone: str, points: Array) -> Closest:
+        """Distance (...) [L] of points (..., 2) from the undisplaced surface, and the normals there."""
+        return _closest(self.surfaces[zone], points)
+
+    def tool_motion(self, zone: str, points: Array, inward: Array | None = None) -> Array:
+        """Displacement (..., 2) [L] of a surface at points (..., 2): that of its tool, or of the other elastic body.
+
+        Of the latter at the nearest places, or at the pairs of points with normals `inward` (..., 2) into their body.
+        """
+        return self._motion_of(zone, self.surfaces[zone], points, inward)
+
+    def _motion_of(self, zone: str, surface: AnyShape, points: Array, inward: Array | None = None) -> Array:
+        """Displacement (..., 2) [L] of the surface of a zone, or of one that goes on from it, as of `tool_motion`."""
+        if isinstance(surface, BodySurface) and surface.elastic:
+            return self._motion_of_body(surface, points, inward)
+        for name, tool in self.problem.tools.items():
+            if zone in tool.zones:
+                x, y, turn = self.tools[name]
+                offset = points - np.array(tool.point or (0.0, 0.0))
+                return np.stack([x - turn * offset[..., 1], y + turn * offset[..., 0]], axis=-1)
+        return np.zeros_like(points)
+
+    def turn_of_normals(self, zone: str, points: Array, normals: Array) -> Array:
+        """Change (k, 2) of normals (k, 2) at points (k, 2) [L] of a surface as its tool turns, or its body deforms."""
+        surface = self.surfaces[zone]
+        if not (isinstance(surface, BodySurface) and surface.elastic):
+            return self.tool_motion(zone, normals) - self.tool_motion(zone, np.zeros((1, 2)))
+        return self._turn_of(surface, points, normals)
+
+    def _motion_of_body(self, surface: BodySurface, points: Array, inward: Array | None = None) -> Array:
+        """Displacement (..., 2) [L] of an elastic body at places opposite to points (..., 2)."""
+        flat = points.reshape(-1, 2)
+        feet = surface.feet(flat) if inward is None else surface.pairs(flat, inward.reshape(-1, 2))
+        element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)
+        values = np.einsum("ki,kix->kx", reference_element.values(xi), self.state.displacement[element])
+        return values.reshape(points.shape)
+
+    def _turn_of(self, surface: BodySurface, points: Array, normals: Array) -> Array:
+        """Change (k, 2) of normals (k, 2) of an elastic body at points (k, 2) [L]."""
+        feet = surface.feet(points)
+        element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)
+        shapes = reference_element.derivatives(xi)
+        along, change = (
+            np.einsum("ki,kix->kx", shapes, values[element]) for values in (self.state.points, self.state.displacement)
+        )
+        slope = np.sum(change * normals, axis=1) / np.sum(along**2, axis=1)
+        return -slope[:, None] * along
+
+
+def _closest(surface: AnyShape, points: Array) -> Closest:
+    """Distance (...) [L] of points (..., 2) from a surface, and the normals there."""
+    flat = points.reshape(-1, 2)
+    parts = [surface.closest(flat[i : i + CHUNK]) for i in range(0, max(len(flat), 1), CHUNK)]
+    gap, normals = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return Closest(gap.reshape(points.shape[:-1]), normals.reshape(points.shape))
