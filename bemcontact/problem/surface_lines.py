@@ -460,7 +460,7 @@ def ridge_beside(offset: Array, body: Array, held: Array, before: Array, after: 
     opens = gap >= abs(cross(offset, body) * cross(held, body)) / 2
     inside = _dot(normals, body) >= 1 - ALIKE
     tilted = (tilt < LIES_ON) & (_dot(normals, body) >= LIES_ON)
-    return RidgeGap(normals, gap, faces, tilted | (inside & opens & (tilt < 1 - ALIKE)))
+    return RidgeGap(normals, gap, faces, tilted | (inside & opens & (abs(cross(held, body)) > ALIKE)))
 
 
 def _dot(a: Array, b: Array) -> Array:

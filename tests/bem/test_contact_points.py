@@ -71,6 +71,7 @@ def test_pressure_of_a_fluid_on_faces_that_fit_the_body(angles, radii, faces, sh
 
 
 @given(st.floats(0.02, 1.4), st.floats(0.02, 1.4), st.floats(-0.3, 0.3), st.floats(0, 0.1), st.floats(-3, 3))
+@example(left=1.0, right=1.0, along=2**-24, height=2**-4, turn=0.0)
 def test_a_ridge_presses_on_a_smooth_edge_along_the_normal_of_the_body(left, right, along, height, turn):
     """At it and beside it, whatever its flanks, if they fall away from the body: gaps are heights above the surface."""
     flanks = np.array([(-np.cos(left), -np.sin(left)), (0.0, 0.0), (np.cos(right), -np.sin(right))])
