@@ -198,7 +198,7 @@ class BodySurface:
         """
         edge, fraction, gap, places = feet.edge.copy(), feet.fraction.copy(), feet.gap.copy(), feet.points.copy()
         normals = places_at(self.edges, edge, fraction).normals
-        astray = np.flatnonzero(np.sum(inward * normals, axis=1) <= 0)
+        astray = np.flatnonzero(np.sum(inward * normals, axis=1) <= TIE)
         least = np.full(len(astray), np.inf)
         for number in range(len(self.edges) if len(astray) else 0):
             there = nearest_on(self.edges[number : number + 1], points[astray])

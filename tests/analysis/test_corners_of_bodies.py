@@ -117,10 +117,11 @@ def test_a_hook_reaches_around_a_block(pressure: float):
     assert np.negative(one.footprint.forces["c"]) == pytest.approx(other.footprint.forces["c"], rel=1e-3, abs=1e-3)
 
 
-def test_a_block_is_drawn_apart_from_both_faces_of_a_step():
+@pytest.mark.parametrize(("x", "y"), [(0.01, 0.01), (0.05, 0.02)])
+def test_a_block_is_drawn_apart_from_both_faces_of_a_step(x: float, y: float):
     """It has come to touch both, so that the forces are those of a block that is drawn there: its loads."""
     step = polygon(bottom=(-4, -4), right=(6, -4), tread=(6, 0), riser=(0, 0), upper=(0, 3), left=(-4, 3))
-    at = block((0.01, 4.01), (0.01, 2.01))
+    at = block((x, 4 + x), (y, 2 + y))
     pushed = elastic(at, {"top": {"pressure": 1.0}, "right": {"pressure": 1.0}})
     for order in (["block", "step"], ["step", "block"]):
         result = bemcontact.solve(problem({"block": pushed, "step": held(step)}, 0.05, c=order))
