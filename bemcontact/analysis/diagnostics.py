@@ -191,6 +191,7 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
 
     On a smooth boundary both are possible. At a corner with a free edge beyond the zone the pressure is bounded if the
     angle is at most a right one: the body and its mirror image in the rigid surface then form no notch (Williams 1952).
+    A zone that ends opposite to a corner of the other body ends as that body does.
     """
     mesh, points, angles = body.mesh, body.points, body.mesh.inner_angles
     in_zone, ends = points.in_zone, np.zeros(len(mesh.nodes), bool)
@@ -198,7 +199,9 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     beyond = np.where(in_zone, mesh.before, np.arange(len(in_zone)))
     free = np.all(~body.acting.values.traction_unknown[beyond], axis=1)
     for i in np.flatnonzero(touching & ends[points.node]):
-        node = points.node[i]
+        node, other = points.node[i], points.opposite.node[i]
+        if other >= 0 and abs(angles[other] - np.pi) >= CORNER:
+            continue
         x, y = mesh.nodes[node]
         reached = f"contact reaches the end of the zone '{_zone(body, i)}' at ({x:.5g}, {y:.5g})"
         if abs(angles[node] - np.pi) < CORNER:

@@ -68,17 +68,18 @@ def displaced(
         if isinstance(surface, BodySurface) and surface.elastic:
             sure, pressed = own.copy(), contact.pressed(solution.pressure, solution.displacement)
             sure[own] = ~tip
-            _see_from_other_side(gaps, zone, points, sure, pressed, linear, found)
+            _see_from_other_side(gaps, zone, points, own, sure, pressed, linear, found)
     return found
 
 
 def _see_from_other_side(
-    gaps: SurfaceGaps, zone: str, points: ContactPoints, own: BoolArray, pressed: BoolArray, linear: Array,
-    found: Displaced,
+    gaps: SurfaceGaps, zone: str, points: ContactPoints, own: BoolArray, sure: BoolArray, pressed: BoolArray,
+    linear: Array, found: Displaced,
 ) -> None:  # fmt: skip
     """Put the distance of nodes of the second elastic body from the first one, where it says more.
 
-    `own` (n,) are the points of the zone that are not at the tip of a notch, and `pressed` (n,) those under pressure.
+    `own` (n,) are the points of the zone, `sure` (n,) those not at the tip of a notch, where another face may be
+    nearer, and `pressed` (n,) those under pressure.
 
     If an end of the second body slides along the first one, nothing is opposite to points behind it. But the pressure
     slides along with the end, if all pressed nodes of the second body in this run are still opposite to the first one.
@@ -90,11 +91,11 @@ def _see_from_other_side(
     there = gaps.from_other_side(zone, mesh.nodes[other[at]] + _at_nodes(gaps, points)[other[at]])
     change = there.gap - linear[at]
     facing = np.sum(there.normals * points.faces[at], axis=1) >= SAME_FACE * np.hypot(*there.normals.T)
-    slid, off = found.other[at] & (found.change[at] > 0), pressed[at] & ~facing & (change > 0)
+    slid, off = found.other[at] & (found.change[at] > 0), pressed[at] & sure[at] & ~facing & (change > 0)
     along = slid & ~np.isin(points.run[at], points.run[at][off])
     corners, others = (mesh.nodes[_convex(mesh, nodes[at[pressed[at]]])] for nodes in (points.node, other))
     places = mesh.nodes[points.node[at]]
-    use = facing & (along | (~slid & (_nearest(places, corners) < _nearest(places, others))))
+    use = facing & (along | (sure[at] & ~slid & (_nearest(places, corners) < _nearest(places, others))))
     at = at[use]
     found.change[at], found.distance[at], found.other[at] = change[use], there.gap[use], False
     found.turn[at] = there.normals[use] - points.faces[at]
