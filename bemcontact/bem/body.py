@@ -55,8 +55,9 @@ WEDGE = 0.02
 """Part of a rigid normal along which conditions leave a point free, up to which the point slides into a wedge."""
 MANY = 3
 """Motions held at zero up to which each has a note of its own."""
-IDLE = 1e-7
-"""Least normal displacement, over that of the motion, of a motion that opens gaps."""
+IDLE = 1e-3
+"""Least normal displacement, over that of the motion, of a motion that opens gaps. Where a roller turns about nearly its
+middle, elements of a coarse mesh seem to open by less."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -210,8 +211,8 @@ class Body:
         rates[abs(rates) <= UNSEEN] = 0.0
         part = nonnegative_residual(rates.T, -rates.sum(axis=0))
         size = np.linalg.norm(part)
-        motion = workless @ part / max(size, IDLE)
-        idle = size > IDLE and (R @ motion).max() > IDLE * abs(motion).max()
+        motion = workless @ part / max(size, UNSEEN)
+        idle = size > UNSEEN and (R @ motion).max() > IDLE * abs(motion).max()
         return self.seen.combined(motion[:, None]).describe()[0] if idle else None
 
     @property

@@ -728,3 +728,22 @@ def test_a_disk_holds_on_a_line_of_two_edges(turned):
     assert abs(one.footprint.peak.pressure - two.footprint.peak.pressure) <= allowed["peak"]
     (_, c), (_, e) = (two.footprint.forces[name] for name in "ce")
     assert abs((-c if turned else c) + e - one.footprint.forces["c"][1]) <= allowed["force"]
+
+
+@pytest.mark.parametrize("driven", [True, False])
+def test_a_roller_squeezed_without_a_load_is_held_wherever_its_rim_begins(driven):
+    """On a coarse mesh the turn about nearly its middle seems to open one gap, and has no bound: no position to refuse.
+
+    Its force, from interference or from a driven body, is that with the rim that begins at an end of contact.
+    """
+    jaw, forces = rigid(block((-3, 3), (2, 3))), []
+    for start in (200, 270):
+        rim = {"name": "rim", "kind": "arc", "center": [0, 1], "radius": 1, "angles": [start, start + 360]}
+        base = elastic(block((-10, 10), (-10, 0)), {"bottom": {"displacement": {"x": 0, "y": 0.004 * driven}}})
+        bodies = {"roller": elastic({"outer": [rim]}), "jaw": jaw, "base": base}
+        above = {"between": ["roller", "jaw"], "gap": 0.0 if driven else -0.004}
+        result = solved(bodies, 0.01, above=above, below=["roller", "base"])
+        assert result.holds
+        forces.append(result.footprint.forces["below"][1])
+        assert forces[-1] == pytest.approx(-result.footprint.forces["above"][1], rel=1e-9)
+    assert forces[0] == pytest.approx(forces[1], rel=0.01)
