@@ -52,7 +52,7 @@ from .parametric.path import LoadPath as LoadPath
 from .parametric.path import load_path as load_path
 from .parametric.sensitivity import Sensitivities as Sensitivities
 from .parametric.sensitivity import Sensitivity as Sensitivity
-from .problem.problem import Problem as Problem
+from .problems.problem import Problem as Problem
 from .runs.study import Study as Study
 from .runs.study import study as study
 from .spec import load as load

@@ -1,7 +1,7 @@
 """Problems whose contact ends inside a zone, for the tests of notes and ends of contact."""
 
 import bemcontact
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 CYLINDER = """
 name: cylinder, a zone of equal elements

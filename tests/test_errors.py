@@ -17,7 +17,7 @@ from bemcontact.errors import (
     escaped_lines,
     hidden_character,
 )
-from bemcontact.problem.units import Units
+from bemcontact.problems.units import Units
 from bemcontact.serialization import json_text
 
 TEXTS = st.text(st.characters(exclude_categories=()), max_size=20)

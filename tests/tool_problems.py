@@ -9,7 +9,7 @@ import numpy as np
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 Spec = dict[str, Any]
 

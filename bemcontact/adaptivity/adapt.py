@@ -16,7 +16,7 @@ from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.bem.condense import Condensation, Condenser, condensed
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
-from bemcontact.problem.problem import ACCURACY, Problem
+from bemcontact.problems.problem import ACCURACY, Problem
 
 NONE_ASKED = "no accuracy is asked for, and errors are not estimated"
 NOT_ESTIMATED = "the errors of this mesh were not estimated"

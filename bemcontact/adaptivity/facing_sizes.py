@@ -8,7 +8,7 @@ import numpy as np
 from bemcontact.adaptivity.sizes import Limit, Loop
 from bemcontact.arrays import Array
 from bemcontact.bem.division import feet, in_order, matched_parts
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 
 SAMPLES = 513
 """Places of a stretch between which the opposite ones are interpolated."""

@@ -22,7 +22,7 @@ from bemcontact.errors import SingularSystemError, SolverError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.active_set import ContactBlock
 from bemcontact.formulations.scaling import scale, scaled_change, unscaled
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 
 SLIT = 1e-3
 """Open length between two stretches of contact, over the shorter of these, that is not taken for an opening."""

@@ -11,11 +11,11 @@ import numpy as np
 from bemcontact.adaptivity.sizes import Limit, Loop
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.mesh import CORNER
-from bemcontact.problem.body_surface import AnyShape, BodySurface
-from bemcontact.problem.curves import Edge
-from bemcontact.problem.nearest_places import gaps, nearest_places, surface_corners
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import DeflectedContour
+from bemcontact.problems.body_surface import AnyShape, BodySurface
+from bemcontact.problems.curves import Edge
+from bemcontact.problems.nearest_places import gaps, nearest_places, surface_corners
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.rigid_surface import DeflectedContour
 
 TURN = pi / 6
 """Angle [rad] by which an element may turn."""

@@ -13,7 +13,7 @@ import numpy as np
 from bemcontact.adaptivity.fields import MeshDifference, Solved, most_of, solved
 from bemcontact.adaptivity.sizes import apart
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 
 SHARE = 0.8
 """Part of the bound that the elements have which are bisected alone."""

@@ -14,7 +14,7 @@ from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
 from bemcontact.adaptivity.sizes import OUTSIDE, Limit
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import Array, IntArray
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 
 LAYERS = 5.0
 """Layers of elements in contact beside an end of contact, at first."""

@@ -11,8 +11,8 @@ from bemcontact.adaptivity.facing_sizes import FacingStretch, ends_of_parts, fac
 from bemcontact.adaptivity.first_sizes import SizedOutline, outline, surface_sizes
 from bemcontact.adaptivity.sizes import GROWTH, SAME, Layers, Limit, Loop
 from bemcontact.errors import Issue, ProblemError
-from bemcontact.problem.geometry import MOST_ELEMENTS
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.geometry import MOST_ELEMENTS
+from bemcontact.problems.problem import Problem
 
 MOST_UNKNOWNS = 4000
 """Largest number of unknowns of the finer mesh, of several bodies as `as_of_one` counts them."""

@@ -16,11 +16,11 @@ from bemcontact.bem.condense import Condenser
 from bemcontact.bem.symmetry import symmetry_lines
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
-from bemcontact.problem.approach import moved_together
-from bemcontact.problem.body_surface import BodySurface
-from bemcontact.problem.edge_places import curvatures, nearest_on, places_at
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.validation import Point
+from bemcontact.problems.approach import moved_together
+from bemcontact.problems.body_surface import BodySurface
+from bemcontact.problems.edge_places import curvatures, nearest_on, places_at
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.validation import Point
 
 RESTING = 0.05
 """Part of the accuracy by which the peak pressure may change with the pairs."""

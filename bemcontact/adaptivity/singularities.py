@@ -10,7 +10,7 @@ from bemcontact.adaptivity.wedge_exponents import Face, OppositeWedge, contact_f
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
 from bemcontact.bem.mesh import CORNER
-from bemcontact.problem.nearest_places import surface_corners
+from bemcontact.problems.nearest_places import surface_corners
 
 GROWING = 1.04, 1.9
 """Growth of the pressure at a place by bisection between which it may be infinite."""

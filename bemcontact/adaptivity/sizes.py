@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.problem.curves import Edge
+from bemcontact.problems.curves import Edge
 
 GROWTH = 1.2
 """Largest growth of the element size with the distance along the boundary: neighbors up to 3.3 times as long."""

@@ -12,7 +12,7 @@ from bemcontact.bem.body import Body
 from bemcontact.bem.mesh import CORNER
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
-from bemcontact.problem.curves import Edge
+from bemcontact.problems.curves import Edge
 from bemcontact.serialization import Pair
 
 SAME = 1e-12

@@ -16,8 +16,8 @@ from bemcontact.bem.outline import Outline
 from bemcontact.bem.stress_field import NEARLY, Located, StressField
 from bemcontact.contact.stress import EdgeStress, PointKind, Stress
 from bemcontact.errors import ProblemError
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import DeflectedContour
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.rigid_surface import DeflectedContour
 from bemcontact.serialization import Pair
 
 FLAT = 1e-6

@@ -10,7 +10,7 @@ from bemcontact.analysis.solve import Progress, Stopwatch
 from bemcontact.assessment.accuracy import together
 from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.options import ComparisonOptions
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 from bemcontact.serialization import Record, Recorded
 
 

@@ -11,9 +11,9 @@ from bemcontact.arrays import Array
 from bemcontact.bem.body import Body, body_of, deflections, each_case, ensure_held
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.errors import ProblemError, SingularSystemError
-from bemcontact.problem import DeflectedContour, Problem
-from bemcontact.problem.boundary import size_of_edges
-from bemcontact.problem.nearest_places import nearest_places, surface_corners
+from bemcontact.problems import DeflectedContour, Problem
+from bemcontact.problems.boundary import size_of_edges
+from bemcontact.problems.nearest_places import nearest_places, surface_corners
 
 BULGE = 1e-5
 """Bulge of a spline over the size of the body that is noted: displacements of stiff bodies are not much larger."""

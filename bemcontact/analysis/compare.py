@@ -24,8 +24,8 @@ from bemcontact.options import (
     Weights,
     ensure_whole,
 )
-from bemcontact.problem.key_path import parsed_path
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.key_path import parsed_path
+from bemcontact.problems.problem import Problem
 
 HARMLESS = ("name", "description", "mesh", "reference", "case")
 """Keys of a spec that do not change its reference values; a reference says which load case it is of."""

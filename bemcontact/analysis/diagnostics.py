@@ -13,9 +13,9 @@ from bemcontact.bem.mesh import CORNER
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.solution import ContactSolution
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.stated_bodies import REACH
-from bemcontact.problem.surface_lines import Polyline, Spline
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.stated_bodies import REACH
+from bemcontact.problems.surface_lines import Polyline, Spline
 
 FEW_POINTS = 5
 """Points under pressure below which a contact is not resolved: three make a parabola, two more its ends."""

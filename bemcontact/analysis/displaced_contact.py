@@ -12,9 +12,9 @@ from bemcontact.bem.mesh import Mesh, MeshPart
 from bemcontact.bem.surface_gaps import SAME_FACE, SurfaceGaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
-from bemcontact.problem.body_surface import BodySurface
-from bemcontact.problem.conditions import Condition
-from bemcontact.problem.surface_lines import STEEP, Polyline
+from bemcontact.problems.body_surface import BodySurface
+from bemcontact.problems.conditions import Condition
+from bemcontact.problems.surface_lines import STEEP, Polyline
 
 
 class Displaced(NamedTuple):

@@ -29,9 +29,9 @@ from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.parametric.path import COMMON, SAME, ensure_same_body, load_path
 from bemcontact.parametric.sensitivity import Sensitivities
 from bemcontact.parametric.sensitivity import sensitivities as sensitivities_of_contact
-from bemcontact.problem.key_path import existing_path, parsed_path
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.wording import described, unknown_word
+from bemcontact.problems.key_path import existing_path, parsed_path
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.wording import described, unknown_word
 
 MODULUS = "young_modulus"
 BODY = ("material", "boundary", "mesh", "materials")

@@ -15,8 +15,8 @@ from bemcontact.bem.body import Body
 from bemcontact.bem.mesh import CORNER, BoundaryState, Mesh
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
-from bemcontact.problem.material import Material
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.material import Material
+from bemcontact.problems.problem import Problem
 
 LARGE = 0.25
 """Change of the displacement over the length along which it changes, and pressure over Young's modulus, not small.

@@ -20,7 +20,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.formulations.multistart import solve_contact
 from bemcontact.formulations.starts import with_start_read
 from bemcontact.options import FormulationName, SolveKeywords, SolveOptions, Weights
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 from bemcontact.serialization import Record, Recorded
 from bemcontact.version import __version__
 

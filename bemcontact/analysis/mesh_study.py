@@ -12,7 +12,7 @@ from bemcontact.assessment.convergence import Convergence, convergence
 from bemcontact.assessment.penetration import Penetration
 from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.options import FormulationName, Weights
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 from bemcontact.reference import Expected, Score, expected, score
 from bemcontact.serialization import Record, Recorded
 from bemcontact.version import __version__

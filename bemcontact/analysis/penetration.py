@@ -23,8 +23,8 @@ from bemcontact.bem.surface_gaps import FaceEnd, SurfaceGaps, surface_gaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
-from bemcontact.problem.loops import contains, first_meeting, signed_area
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.loops import contains, first_meeting, signed_area
+from bemcontact.problems.problem import Problem
 
 DETAIL = 1e-4
 """Length over the size of the body of parts of its boundary that may fold: the tip of a notch."""

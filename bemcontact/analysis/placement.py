@@ -24,8 +24,8 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.formulations import complementarity
-from bemcontact.problem.body_surface import BodySurface
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.body_surface import BodySurface
+from bemcontact.problems.problem import Problem
 
 LEAST_ASKED = 0.01
 """Accuracy to which the place is judged, unless a smaller one is asked for. A relative curvature that is off by 2 %

@@ -15,7 +15,7 @@ from bemcontact.blas_threads import one_thread
 from bemcontact.contact.record import UnitsRecord
 from bemcontact.errors import SpecError
 from bemcontact.options import ComparisonOptions, FormulationName
-from bemcontact.problem import Problem, Table, Units, Values
+from bemcontact.problems import Problem, Table, Units, Values
 from bemcontact.reference.paper import PROBLEMS, PaperProblem, PaperQuantity, PaperStatement
 from bemcontact.reference.positions import coordinates
 from bemcontact.serialization import Record, Recorded, Vector

@@ -28,7 +28,7 @@ from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.contact.stress import EdgeStress, LargestStresses, Stress, TriangulatedBody
 from bemcontact.errors import ProblemError
 from bemcontact.options import FormulationName, Weights
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 from bemcontact.serialization import PairTables, Record, Recorded
 from bemcontact.version import __version__
 

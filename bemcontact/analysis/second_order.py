@@ -18,7 +18,7 @@ from bemcontact.bem.body import Body
 from bemcontact.bem.loading import particular_solutions
 from bemcontact.bem.mesh import BoundaryState, Mesh
 from bemcontact.errors import BemContactError
-from bemcontact.problem.conditions import Loads
+from bemcontact.problems.conditions import Loads
 
 CHANGED = 0.05
 """Error of displacements or forces from which it is noted, if strains are smaller."""

@@ -36,7 +36,7 @@ from bemcontact.options import (
     ensure_known,
     ensure_whole,
 )
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 
 Progress = Callable[[str, str], object]
 """Takes the name of a stage and how far it has come; the latter is empty when the stage begins."""

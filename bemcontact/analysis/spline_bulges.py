@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from bemcontact.bem.body import Body
-from bemcontact.problem.surface_lines import Spline
+from bemcontact.problems.surface_lines import Spline
 
 
 def bulging(body: Body, least: float, reach: float = np.inf) -> Iterator[str]:

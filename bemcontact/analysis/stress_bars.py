@@ -19,7 +19,7 @@ from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.contact.stress import LargestStresses, Stress, StressPeak
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 from bemcontact.serialization import Pair
 
 AROUND = np.vstack([[0.0, 0.0], RINGS / 2])

@@ -24,8 +24,8 @@ from bemcontact.contact.stress import (
     TriangulatedBody,
 )
 from bemcontact.errors import ProblemError
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.wording import unknown_word
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.wording import unknown_word
 from bemcontact.serialization import Pair
 
 

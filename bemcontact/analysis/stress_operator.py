@@ -17,7 +17,7 @@ from bemcontact.blas_threads import one_thread
 from bemcontact.contact.stress import PointKind
 from bemcontact.contact.stress_operator import StressOperator
 from bemcontact.errors import ProblemError
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 
 
 @one_thread

@@ -7,8 +7,8 @@ from bemcontact.bem.condense import Condensation
 from bemcontact.bem.condense import condense as condense_body
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import KeyPath, ProblemError
-from bemcontact.problem.key_path import parsed_path
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.key_path import parsed_path
+from bemcontact.problems.problem import Problem
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,11 +28,11 @@ from bemcontact.checks.memory import ensure_memory
 from bemcontact.contact.free_motions import MotionAlgebra
 from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, ProblemError
-from bemcontact.problem.body_surface import BodySurface, BodyZone
-from bemcontact.problem.material import Material
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import Circle, DeflectedContour
-from bemcontact.problem.visibility import zone_edges
+from bemcontact.problems.body_surface import BodySurface, BodyZone
+from bemcontact.problems.material import Material
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.rigid_surface import Circle, DeflectedContour
+from bemcontact.problems.visibility import zone_edges
 
 TURNED = {
     "plane": "its normal points to the body",
@@ -56,8 +56,8 @@ WEDGE = 0.02
 MANY = 3
 """Motions held at zero up to which each has a note of its own."""
 IDLE = 1e-3
-"""Least normal displacement, over that of the motion, of a motion that opens gaps. Where a roller turns about nearly its
-middle, elements of a coarse mesh seem to open by less."""
+"""Least normal displacement, over that of the motion, of a motion that opens gaps. As a roller turns about nearly its
+middle, gaps on a coarse mesh seem to open, by less."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

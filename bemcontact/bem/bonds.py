@@ -12,7 +12,7 @@ import numpy as np
 from bemcontact.arrays import Array, IntArray
 from bemcontact.bem.mesh import BoundaryValues, Mesh, MeshPart
 from bemcontact.bem.unit_pressures import UnitPressures
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

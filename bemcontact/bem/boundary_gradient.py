@@ -25,7 +25,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
-from bemcontact.problem.material import Material
+from bemcontact.problems.material import Material
 
 STARTS, ENDS = 0, 2
 """Local nodes at which an element starts and ends."""

@@ -23,7 +23,7 @@ from bemcontact.bem.system import System
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import Gauge, fix_gauge
 from bemcontact.contact.load_cases import LoadCases, Tools
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -13,11 +13,11 @@ from bemcontact.bem.mesh import BoundaryValues, Mesh, MeshPart
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.errors import Issue, ProblemError
-from bemcontact.problem.body_surface import AnySurface, BodySurface
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import DeflectedContour
-from bemcontact.problem.surface_lines import Faces
-from bemcontact.problem.visibility import turned_to
+from bemcontact.problems.body_surface import AnySurface, BodySurface
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.rigid_surface import DeflectedContour
+from bemcontact.problems.surface_lines import Faces
+from bemcontact.problems.visibility import turned_to
 
 PARALLEL = 1e-9
 """Sine of the angle below which the rigid normal lies along a prescribed axis."""

@@ -12,8 +12,8 @@ from bemcontact.bem.solution import solve_system
 from bemcontact.bem.system import System
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.errors import Issue, KeyPath, ProblemError
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import DeflectedContour
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.rigid_surface import DeflectedContour
 
 
 def deflection(problem: Problem, mesh: Mesh, zone: str, surface: DeflectedContour) -> Array:

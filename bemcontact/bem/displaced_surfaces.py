@@ -9,10 +9,10 @@ from bemcontact.arrays import Array
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import Outline
-from bemcontact.problem.body_surface import AnyShape, BodySurface
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import DeflectedContour
-from bemcontact.problem.surface_lines import Closest
+from bemcontact.problems.body_surface import AnyShape, BodySurface
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.rigid_surface import DeflectedContour
+from bemcontact.problems.surface_lines import Closest
 
 CHUNK = 8192
 """Number of places whose distance from a surface is computed at a time."""

@@ -12,10 +12,10 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.errors import Issue, ProblemError
-from bemcontact.problem.body_surface import BodySurface
-from bemcontact.problem.curves import Edge
-from bemcontact.problem.pairing import HALF, OppositePart
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.body_surface import BodySurface
+from bemcontact.problems.curves import Edge
+from bemcontact.problems.pairing import HALF, OppositePart
+from bemcontact.problems.problem import Problem
 
 NEAR = 0.3
 """Part of an element up to which one of its ends moves to where an opposite part ends, instead of a new end there."""

@@ -16,12 +16,12 @@ from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import BoundaryValues, Mesh, MeshPart, along_curve, applied_traction, boundary_values
 from bemcontact.bem.rigid_motions import FreeMotions
 from bemcontact.errors import ProblemError
-from bemcontact.problem.bodies import Part
-from bemcontact.problem.conditions import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
-from bemcontact.problem.curves import Edge
-from bemcontact.problem.load_case import LoadCase
-from bemcontact.problem.material import Material
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.bodies import Part
+from bemcontact.problems.conditions import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
+from bemcontact.problems.curves import Edge
+from bemcontact.problems.load_case import LoadCase
+from bemcontact.problems.material import Material
+from bemcontact.problems.problem import Problem
 
 EXACT_ORDER = 2
 """Gauss points that integrate x dy exactly along a quadratic element."""

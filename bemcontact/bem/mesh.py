@@ -13,9 +13,9 @@ from bemcontact.bem import reference_element
 from bemcontact.bem.division import Division, divided
 from bemcontact.checks.attributes import PLACE, WithHints, Words
 from bemcontact.errors import Issue, ProblemError
-from bemcontact.problem.conditions import AxisFields, Condition, Field
-from bemcontact.problem.curves import Edge
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.conditions import AxisFields, Condition, Field
+from bemcontact.problems.curves import Edge
+from bemcontact.problems.problem import Problem
 
 ARC_ORDER = 12
 """Gauss points for the arc length of half an element."""

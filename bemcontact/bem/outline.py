@@ -10,12 +10,12 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
-from bemcontact.problem.body_surface import AnySurface, BodySurface
-from bemcontact.problem.curves import Edge
-from bemcontact.problem.nearest_places import nearest_places, surface_corners
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.rigid_surface import Circle, Plane
-from bemcontact.problem.surface_lines import Polyline, Spline
+from bemcontact.problems.body_surface import AnySurface, BodySurface
+from bemcontact.problems.curves import Edge
+from bemcontact.problems.nearest_places import nearest_places, surface_corners
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.rigid_surface import Circle, Plane
+from bemcontact.problems.surface_lines import Polyline, Spline
 
 SAMPLES = np.linspace(-1.0, 1.0, 17)
 """Local coordinates at which the boundary is compared with a surface; some are moved, see `Outline.local`."""

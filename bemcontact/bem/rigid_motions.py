@@ -11,8 +11,8 @@ from bemcontact.bem.bonds import BondedPoints, split_motions
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.unit_pressures import UnitPressures
-from bemcontact.problem.contact_zone import RigidTool, ToolAction
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.contact_zone import RigidTool, ToolAction
+from bemcontact.problems.problem import Problem
 
 HELD = 1e-9
 """Singular value, relative to one, below which the prescribed displacements do not hold a motion."""

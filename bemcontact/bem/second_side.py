@@ -11,8 +11,8 @@ import numpy as np
 from bemcontact.arrays import Array
 from bemcontact.bem import reference_element
 from bemcontact.bem.surface_gaps import FLUSH, SurfaceGaps
-from bemcontact.problem.bodies import named_loops
-from bemcontact.problem.body_surface import BodySurface
+from bemcontact.problems.bodies import named_loops
+from bemcontact.problems.body_surface import BodySurface
 
 SAMPLES = np.linspace(0.0, 1.0, 33)
 """Fractions of the edges of a rigid body at which it is compared; of an elastic one these are the nodes."""

@@ -15,10 +15,10 @@ from bemcontact.bem.loading import VolumeField, particular_field
 from bemcontact.bem.mesh import CORNER, Mesh
 from bemcontact.bem.outline import ROUGH, Outline
 from bemcontact.bem.symmetry import SymmetryLine, symmetry_lines
-from bemcontact.problem.conditions import Loads
-from bemcontact.problem.material import Material
-from bemcontact.problem.nearest_places import surface_corners
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.conditions import Loads
+from bemcontact.problems.material import Material
+from bemcontact.problems.nearest_places import surface_corners
+from bemcontact.problems.problem import Problem
 
 ON_BOUNDARY, NEARLY = 1e-12, 1e-9
 """Distance from the boundary over the size of the body that is none: to either side, and out of the body."""

@@ -21,9 +21,9 @@ from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import NODES
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
-from bemcontact.problem.body_surface import BodySurface
-from bemcontact.problem.curves import cross
-from bemcontact.problem.surface_lines import Faces, Polyline, Spline
+from bemcontact.problems.body_surface import BodySurface
+from bemcontact.problems.curves import cross
+from bemcontact.problems.surface_lines import Faces, Polyline, Spline
 
 FLUSH = 1e-6
 """Distance of an undeformed place from a surface, over the size of the body, up to which it lies in the surface; and

@@ -11,7 +11,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.mesh import Mesh
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 
 STRAIGHT = 1e-12
 """Deviation of a unit normal from an axis, and of a place over the size of the body, that is round-off."""

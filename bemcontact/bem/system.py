@@ -24,7 +24,7 @@ from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import BoundaryValues, Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.unit_pressures import UnitPressures
-from bemcontact.problem.material import Material
+from bemcontact.problems.material import Material
 
 OFFSET = 2 / 3
 """|ξ| of the collocation points inside the two elements at a node where both prescribe the displacement."""

@@ -60,7 +60,7 @@ def path(
     def work(report: Report) -> CommandOutput:
         with modules():
             from bemcontact.analysis.follow import follow
-            from bemcontact.problem.key_path import parsed_path
+            from bemcontact.problems.key_path import parsed_path
             from bemcontact.report.path_text import path_summary
             from bemcontact.report.path_verdicts import path_verdicts
             from bemcontact.report.verdicts import shortfall_of

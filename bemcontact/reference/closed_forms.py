@@ -6,7 +6,7 @@ from math import copysign, pi, sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.problem.material import Material
+from bemcontact.problems.material import Material
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ from pydantic import PlainSerializer, computed_field
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
-from bemcontact.problem import (
+from bemcontact.problems import (
     Crack,
     FlatPunch,
     Hertz,
@@ -24,7 +24,7 @@ from bemcontact.problem import (
     Uniform,
     Values,
 )
-from bemcontact.problem.pin_and_hole import EQUAL, Round, pin_and_hole
+from bemcontact.problems.pin_and_hole import EQUAL, Round, pin_and_hole
 from bemcontact.reference.closed_forms import (
     BeamOverProp,
     ClosedCrack,

@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 
 from bemcontact.arrays import Array
-from bemcontact.problem.material import Material
+from bemcontact.problems.material import Material
 
 TERMS = 40
 """Number of Chebyshev polynomials: half angle and peak have 8 digits, and all digits if the materials are equal."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.problem import Part, Table, Values
+from bemcontact.problems import Part, Table, Values
 from bemcontact.serialization import Pair
 
 LEVEL = 1e-9

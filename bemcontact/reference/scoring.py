@@ -8,7 +8,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.problem import Table, Values
+from bemcontact.problems import Table, Values
 from bemcontact.reference.evaluation import Expected
 from bemcontact.reference.positions import LEVEL, Frame, coordinates, in_zone
 from bemcontact.serialization import Leaf

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from bemcontact.problem import Units
+from bemcontact.problems import Units
 from bemcontact.report.formatting import (
     JsonObject,
     number,

@@ -8,7 +8,7 @@ from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.mesh_study import MeshLevel, MeshStudy
 from bemcontact.assessment.comparison import Comparison
 from bemcontact.assessment.contender import Contender
-from bemcontact.problem import Units
+from bemcontact.problems import Units
 from bemcontact.report.contact_words import penalty_in_words, units_of
 from bemcontact.report.facts import facts, scores_in_words
 from bemcontact.report.formatting import seconds_in_words

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import LocalSearch
-from bemcontact.problem import Units
+from bemcontact.problems import Units
 from bemcontact.report.formatting import JsonObject, number, plural
 
 

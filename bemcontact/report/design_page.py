@@ -11,7 +11,7 @@ from bemcontact.arrays import Array
 from bemcontact.errors import ProblemError
 from bemcontact.modelling.gap_design.designed_gap import MEASURED, GapDesign
 from bemcontact.modelling.gap_design.relief import Relief
-from bemcontact.problem import Units
+from bemcontact.problems import Units
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.formatting import number, sentence_case, with_unit, zero_if_negligible
 from bemcontact.report.page import picture, template

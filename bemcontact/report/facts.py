@@ -8,7 +8,7 @@ import numpy as np
 
 from bemcontact.assessment.accuracy import bar_of_largest
 from bemcontact.contact.free_motions import angle_of_round_off
-from bemcontact.problem import Units
+from bemcontact.problems import Units
 from bemcontact.report.bars import (
     NOTHING,
     ROUND_OFF,

@@ -20,7 +20,7 @@ from bemcontact.modelling.gap_design.designed_gap import GapDesign
 from bemcontact.modelling.gap_design.relief import Relief
 from bemcontact.options import StressMeasure
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 from bemcontact.report import design_page, page, path_page, result_page, study_page
 from bemcontact.report import reproduction as paper_page
 from bemcontact.report.figures import (

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.problem import (
+from bemcontact.problems import (
     AnySurface,
     BodySurface,
     Circle,

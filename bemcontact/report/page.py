@@ -12,7 +12,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from bemcontact.assessment.contender import OUTCOMES, Outcome
 from bemcontact.errors import escaped_lines
-from bemcontact.problem import Units
+from bemcontact.problems import Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, infinite_peaks, with_bar
 from bemcontact.report.contact_words import PenaltyWords, penalty_in_words
 from bemcontact.report.facts import (

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.problem import Problem, Units
+from bemcontact.problems import Problem, Units
 from bemcontact.report.bars import BARS_ARE, with_bar
 from bemcontact.report.breakpoints import breakpoint_words
 from bemcontact.report.contact_words import units_of

@@ -5,7 +5,7 @@ from rich.table import Table
 from rich.text import Text
 
 from bemcontact.analysis.check import CheckedProblem
-from bemcontact.problem import DeflectedContour
+from bemcontact.problems import DeflectedContour
 from bemcontact.report.formatting import (
     case_in_words,
     deflected_by,

@@ -8,7 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
-from bemcontact.problem import Units
+from bemcontact.problems import Units
 from bemcontact.report.bars import NOTHING
 from bemcontact.report.facts import QUALITIES, peak_of, score_verdict, scores_in_words, small
 from bemcontact.report.formatting import JsonObject, number, seconds_in_words, sentence_case, with_unit

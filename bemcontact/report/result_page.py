@@ -11,7 +11,7 @@ from bemcontact.analysis.result import Result
 from bemcontact.assessment.contender import OUTCOMES
 from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, SHEAR_BELOW, StressPeak
 from bemcontact.options import StressMeasure
-from bemcontact.problem import Units
+from bemcontact.problems import Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, bars_of, mesh_in_short, with_bar
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import (

@@ -8,7 +8,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from bemcontact.errors import escaped_lines
-from bemcontact.problem.units import Units
+from bemcontact.problems.units import Units
 from bemcontact.report.bars import NOTHING, error_percent, with_error
 from bemcontact.report.formatting import number, plural, seconds_in_words, sentence_case, with_unit
 from bemcontact.report.page import Picture, picture, template

@@ -12,7 +12,7 @@ from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, SHEAR_BELOW
-from bemcontact.problem import Units
+from bemcontact.problems import Units
 from bemcontact.report.bars import NOTHING, JsonObject, bars_of, unit_of_bar, with_bar, without_digits_beyond
 from bemcontact.report.facts import (
     contact_intervals,

@@ -10,7 +10,7 @@ from typing import Any
 from bemcontact.analysis.solve import AskedAccuracy, Progress
 from bemcontact.checks.arguments import ensure_callable, file_path, text_of_argument, whole_number
 from bemcontact.errors import ProblemError
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 from bemcontact.report import folder as folders
 from bemcontact.report.study_page import rows_in_short
 from bemcontact.studies.cluster import ensure_dask, rows_by_dask

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from bemcontact.errors import Issue, KeyPath
-from bemcontact.problem.key_path import with_entry
-from bemcontact.problem.validation import KeyIssue
+from bemcontact.problems.key_path import with_entry
+from bemcontact.problems.validation import KeyIssue
 
 MOST_LINES = 100
 """Largest number of mistakes that are shown."""

@@ -14,11 +14,11 @@ from bemcontact.checks.arguments import shown, text_of_argument, texts
 from bemcontact.checks.described_schema import DescribedSchema
 from bemcontact.errors import Issue, KeyPath, ProblemError, SpecError, escaped
 from bemcontact.files.text import place_after, text_of
-from bemcontact.problem import Problem, Variant
-from bemcontact.problem.key_path import RawValue, existing_path, parsed_path
-from bemcontact.problem.problem import OF_ONE_BODY
-from bemcontact.problem.readable import readable_part
-from bemcontact.problem.wording import described, number_hint, unknown_word
+from bemcontact.problems import Problem, Variant
+from bemcontact.problems.key_path import RawValue, existing_path, parsed_path
+from bemcontact.problems.problem import OF_ONE_BODY
+from bemcontact.problems.readable import readable_part
+from bemcontact.problems.wording import described, number_hint, unknown_word
 from bemcontact.spec.document import Document, LocatedMessage, Mark, Place, error_text
 from bemcontact.spec.yaml_1_2 import (
     LONGEST_KEY,

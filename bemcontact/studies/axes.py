@@ -10,7 +10,7 @@ import numpy as np
 
 from bemcontact.checks.arguments import instance_of, shown, text_of_argument
 from bemcontact.errors import Issue, KeyPath, OptionError, ProblemError, SpecError
-from bemcontact.problem.key_path import parsed_path
+from bemcontact.problems.key_path import parsed_path
 from bemcontact.spec import written_value
 
 VARIANT, CASE = "variant", "case"

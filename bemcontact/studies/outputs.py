@@ -10,8 +10,8 @@ from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.checks.arguments import texts
 from bemcontact.errors import OptionError
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.wording import unknown_word
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.wording import unknown_word
 from bemcontact.serialization import Leaf
 
 WHOLE = ("peak", "peak_x", "peak_y", "resultant_x", "resultant_y", "moment", "displacement")

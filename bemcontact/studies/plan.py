@@ -11,8 +11,8 @@ from typing import Any
 from bemcontact.analysis.solve import AskedAccuracy, asking, ensure_kind
 from bemcontact.analysis.variation import case_of
 from bemcontact.errors import Issue, OptionError, ProblemError
-from bemcontact.problem.problem import Problem
-from bemcontact.problem.wording import unknown_word
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.wording import unknown_word
 from bemcontact.studies.axes import CASE, Axis, axes_of, located_in
 from bemcontact.version import __version__
 

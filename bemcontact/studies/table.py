@@ -14,7 +14,7 @@ from typing import Any
 from bemcontact.assessment.accuracy import together
 from bemcontact.checks.arguments import is_real
 from bemcontact.contact.record import UnitsRecord
-from bemcontact.problem.units import Units
+from bemcontact.problems.units import Units
 from bemcontact.serialization import Leaf, Record, Recorded
 from bemcontact.studies.axes import Axis
 from bemcontact.studies.outputs import columns_of

@@ -16,7 +16,7 @@ from bemcontact.bem.body import Body, body_of
 from bemcontact.bem.condense import Condensation, CondensedTogether, Condenser, condense_together, matrix_of
 from bemcontact.errors import BemContactError, ProblemError
 from bemcontact.options import SolveOptions
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 from bemcontact.studies.plan import StudyPlan
 from bemcontact.studies.rows import MemberRow, failed_row, row_of
 

@@ -37,7 +37,7 @@ from bemcontact.formulations.active_set import first_active_set, primal_dual
 from bemcontact.formulations.complementarity import ACCEPTED, standard_form
 from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.scaling import scale
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 RADIUS = 50.0
 

@@ -26,7 +26,7 @@ from bemcontact.adaptivity.error_bars import END, FORCE, PEAK, SAFETY, error_bar
 from bemcontact.adaptivity.fields import MeshDifference, solved
 from bemcontact.adaptivity.hidden_changes import REMAINS, hidden_change, told_apart
 from bemcontact.assessment.accuracy import ErrorBar
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 pytestmark = pytest.mark.usefixtures("meshes_found_once")
 

@@ -6,7 +6,7 @@ from adaptive_problems import block_on_flat_floor, half_disk
 
 from bemcontact.adaptivity.fields import MeshDifference, halves, norm_squared, penetrations, solved
 from bemcontact.adaptivity.mesh_sizes import first_mesh
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 
 def difference(problem: Problem) -> MeshDifference:

@@ -10,8 +10,8 @@ from several_bodies import elastic
 from bemcontact.adaptivity.first_sizes import outline, surface_sizes
 from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.adaptivity.sizes import GROWTH
-from bemcontact.problem import Problem
-from bemcontact.problem.nearest_places import surface_corners
+from bemcontact.problems import Problem
+from bemcontact.problems.nearest_places import surface_corners
 
 PLANE = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
 

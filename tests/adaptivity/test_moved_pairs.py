@@ -7,7 +7,7 @@ from several_bodies import HELD, block, circle, elastic, problem
 
 import bemcontact
 from bemcontact.adaptivity.moved_pairs import RESTING
-from bemcontact.problem import Material
+from bemcontact.problems import Material
 from bemcontact.reference.pin_in_hole import LoosePin
 
 CLEARANCE = 0.02

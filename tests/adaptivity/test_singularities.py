@@ -9,7 +9,7 @@ import pytest
 from bemcontact.adaptivity.adapt import meshed
 from bemcontact.adaptivity.fields import solved
 from bemcontact.adaptivity.singularities import ContactPlace, Singularity, Watch, _History, _nearest, _slope
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 from bemcontact.spec import load
 
 GALLERY = Path(__file__).parents[2] / "models" / "gallery"

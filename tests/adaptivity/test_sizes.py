@@ -22,7 +22,7 @@ from bemcontact.adaptivity.sizes import (
     Loop,
 )
 from bemcontact.arrays import Array
-from bemcontact.problem.boundary import Boundary
+from bemcontact.problems.boundary import Boundary
 
 WIDTH, HEIGHT = 8.0, 4.0
 AROUND = 2 * (WIDTH + HEIGHT)

@@ -8,7 +8,7 @@ from messages import assert_states
 from several_bodies import HELD, block, elastic, problem
 
 from bemcontact.analysis.check import check
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 
 @settings(max_examples=25, deadline=None)

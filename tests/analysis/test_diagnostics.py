@@ -18,8 +18,8 @@ from bemcontact.analysis.check import check
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.solve import condense, solve
 from bemcontact.errors import ProblemError
-from bemcontact.problem import Problem
-from bemcontact.problem.surface_lines import Spline
+from bemcontact.problems import Problem
+from bemcontact.problems.surface_lines import Spline
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import facts
 

@@ -23,7 +23,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.options import ComparisonOptions, FormulationName
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 MODELS = Path(__file__).parents[2] / "models"
 PRESSURE = "conditions.top.pressure"

@@ -11,7 +11,7 @@ import bemcontact
 from bemcontact.analysis.linear_theory import LARGE, LARGE_PART, LARGE_ROTATION, Judgment, large_displacements
 from bemcontact.assessment.penetration import Misfit
 from bemcontact.bem.mesh import BoundaryState
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 
 def affine(gradient: np.ndarray, unit: float = 1.0, share: float = 1.0) -> Judgment:

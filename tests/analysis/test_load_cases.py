@@ -33,7 +33,7 @@ from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import condense
 from bemcontact.errors import ProblemError
 from bemcontact.options import ComparisonOptions
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 from bemcontact.reference.closed_forms import PunchOnHalfPlane
 
 GALLERY = Path(__file__).parents[2] / "models" / "gallery"

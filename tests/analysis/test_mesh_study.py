@@ -10,7 +10,7 @@ from bemcontact.analysis import compare as comparing
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import OptionError, ProblemError
 from bemcontact.options import ComparisonOptions
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 
 def block(pressure: float = 3.0) -> Problem:

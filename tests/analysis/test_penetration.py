@@ -11,7 +11,7 @@ from bemcontact.assessment.penetration import ROUND_OFF, TOLERATED, Misfit
 from bemcontact.bem.body import body_of
 from bemcontact.bem.surface_gaps import FLUSH, NODES, surface_gaps
 from bemcontact.options import ComparisonOptions
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 E, NU, SIDE = 1000.0, 0.3, 10.0
 TURNS = st.integers(0, 628).map(lambda hundredths: hundredths / 100)

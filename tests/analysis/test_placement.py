@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from bemcontact import follow, solve
 from bemcontact.analysis.placement import LEAST_ASKED, NOTED, WITHHELD
 from bemcontact.assessment.penetration import Misfit
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 R = 10.0
 SAID = NOTED * LEAST_ASKED

@@ -14,7 +14,7 @@ from bemcontact.analysis.linear_theory import LARGE, NOTICED
 from bemcontact.analysis.second_order import CHANGED
 from bemcontact.assessment.penetration import Misfit
 from bemcontact.bem.body import body_of
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 HELD = {"displacement": {"x": 0, "y": 0}}
 SLENDER = 40.0

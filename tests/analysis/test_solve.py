@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import bemcontact
 from bemcontact.formulations import FORMULATIONS as FORMULATIONS_BY_NAME
 from bemcontact.options import SolveOptions
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 from bemcontact.report.facts import facts
 
 PEAK, HALF_WIDTH = 183.335, 2.7685

@@ -8,7 +8,7 @@ from tool_problems import FREE, FREE_CASES, made
 
 import bemcontact
 from bemcontact import ProblemError, stress_operator
-from bemcontact.problem.conditions import Temperature
+from bemcontact.problems.conditions import Temperature
 
 MODELS = Path(__file__).parents[2] / "models"
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import bemcontact
-from bemcontact.problem.body_surface import BodySurface
+from bemcontact.problems.body_surface import BodySurface
 
 E_UPPER, E_LOWER, NU = 1000.0, 500.0, 0.3
 MODULUS = 1 / ((1 - NU**2) * (1 / E_UPPER + 1 / E_LOWER))

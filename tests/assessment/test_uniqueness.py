@@ -12,7 +12,7 @@ from bemcontact.assessment.residual import residuals
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.formulations import complementarity
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 N = 5
 """Contact points of a random problem."""

@@ -10,8 +10,8 @@ from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_r
 from bemcontact.bem.solution import solve_system
 from bemcontact.bem.system import System
 from bemcontact.bem.unit_pressures import UnitPressures
-from bemcontact.problem.conditions import Loads
-from bemcontact.problem.material import Material
+from bemcontact.problems.conditions import Loads
+from bemcontact.problems.material import Material
 
 Curve = Callable[[np.ndarray], np.ndarray]
 

@@ -9,7 +9,7 @@ from bemcontact.bem import reference_element
 from bemcontact.bem.boundary_gradient import BoundaryFields
 from bemcontact.bem.interior import Interior
 from bemcontact.bem.mesh import Mesh
-from bemcontact.problem.material import Material
+from bemcontact.problems.material import Material
 
 
 class State(NamedTuple):

@@ -7,7 +7,7 @@ from several_bodies import elastic, stated
 from bemcontact.analysis.solve import condense, solve
 from bemcontact.bem.body import body_of
 from bemcontact.errors import ProblemError
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 HELD = {"displacement": {"x": 0, "y": 0}}
 CONTOUR = ("contact_zones", "seat", "surface")

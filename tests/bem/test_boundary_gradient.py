@@ -7,7 +7,7 @@ from stress_states import CONSTANT, SMOOTH, below, exact_fields
 
 from bemcontact.bem.boundary_gradient import BoundaryFields
 from bemcontact.bem.mesh import Mesh
-from bemcontact.problem.material import Material
+from bemcontact.problems.material import Material
 
 MATERIALS = [Material(young_modulus=3.0, poisson_ratio=nu, state=state) for nu, state in
              ((0.3, "plane_strain"), (0.499, "plane_strain"), (0.5, "plane_stress"))]  # fmt: skip

@@ -15,7 +15,7 @@ from bemcontact.bem.condense import condense
 from bemcontact.bem.rigid_motions import free_rigid_motions
 from bemcontact.bem.solution import assemble, residual
 from bemcontact.bem.system import BY_NUMBA, WORTH_COMPILING, System, machine_code
-from bemcontact.problem.material import Material
+from bemcontact.problems.material import Material
 
 MATERIAL = Material(young_modulus=1000, poisson_ratio=0.3)
 STRESS = np.array([[3.0, 1.2], [1.2, -2.0]])

@@ -7,7 +7,7 @@ from bemcontact.analysis.solve import solve
 from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import boundary_state, condense
 from bemcontact.errors import ProblemError
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 PLANE = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
 WALL = {"kind": "plane", "point": [0, 0], "normal": [1, 0]}

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from bemcontact import solve
 from bemcontact.bem.body import body_of
-from bemcontact.problem import Polyline, Problem
+from bemcontact.problems import Polyline, Problem
 
 PRESSURE = 3.0
 FILLED = {"temperature": {"expansion": 1e-5, "change": (1 - 2 * 0.3) * PRESSURE / 1000.0 / 1e-5}}

@@ -9,7 +9,7 @@ from stress_states import CONSTANT, SMOOTH, below, exact_fields, fields_of, stre
 
 from bemcontact.bem.interior import Interior
 from bemcontact.bem.mesh import Mesh
-from bemcontact.problem.material import Material
+from bemcontact.problems.material import Material
 
 MATERIAL = Material(young_modulus=3.0, poisson_ratio=0.3)
 DEPTHS = [0.1, 1e-3, 1e-6, 1e-8]

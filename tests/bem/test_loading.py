@@ -9,9 +9,9 @@ from bemcontact.bem.body import Body, body_of
 from bemcontact.bem.loading import case_loadings, combined, particular_solution, permanent_loading, true_resultant
 from bemcontact.bem.mesh import build
 from bemcontact.errors import ProblemError
-from bemcontact.problem.conditions import Centrifugal, Gravity, Loads, Temperature
-from bemcontact.problem.material import Material
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.conditions import Centrifugal, Gravity, Loads, Temperature
+from bemcontact.problems.material import Material
+from bemcontact.problems.problem import Problem
 
 PAIRS = [(HELD, HELD_CASES, HELD_BY_HAND), (FREE, FREE_CASES, FREE_BY_HAND)]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bemcontact.bem import mesh
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 PLANE = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
 

@@ -6,7 +6,7 @@ from bodies import arc, even, mesh_of, system_of, values_of
 
 from bemcontact.bem import solution
 from bemcontact.bem.rigid_motions import RigidMotions
-from bemcontact.problem.material import Material
+from bemcontact.problems.material import Material
 
 
 @pytest.mark.parametrize("limit", [0.0, solution.LARGEST_COPY])

@@ -11,8 +11,8 @@ from bemcontact.bem.solution import solve_system
 from bemcontact.bem.stress_field import StressField, smooth_starts
 from bemcontact.bem.system import System
 from bemcontact.bem.unit_pressures import UnitPressures
-from bemcontact.problem.conditions import Condition
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.conditions import Condition
+from bemcontact.problems.problem import Problem
 
 STATES = ["plane_strain", "plane_stress"]
 FAR = {"kind": "plane", "point": [0, -99], "normal": [0, 1]}

@@ -12,7 +12,7 @@ import bemcontact
 from bemcontact.bem.interior import Interior
 from bemcontact.bem.mesh import build
 from bemcontact.bem.symmetry import SymmetryLine, symmetry_lines
-from bemcontact.problem.material import Material
+from bemcontact.problems.material import Material
 
 MATERIAL = Material(young_modulus=3.0, poisson_ratio=0.3)
 FAR = {"kind": "plane", "point": [0, 99], "normal": [0, -1]}

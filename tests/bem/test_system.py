@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from bemcontact.analysis.solve import solve as solve_problem
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.solution import solve_system
-from bemcontact.problem import Problem
-from bemcontact.problem.material import Material
+from bemcontact.problems import Problem
+from bemcontact.problems.material import Material
 
 MATERIAL = Material(young_modulus=1000, poisson_ratio=0.3)
 STRESS = np.array([[3.0, 1.2], [1.2, -2.0]])

@@ -17,7 +17,7 @@ from timing import best_of
 from bemcontact.bem.body import body_of
 from bemcontact.bem.solution import assemble
 from bemcontact.bem.system import System, machine_code
-from bemcontact.problem.problem import Problem
+from bemcontact.problems.problem import Problem
 
 Array = NDArray[np.float64]
 

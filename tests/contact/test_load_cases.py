@@ -14,7 +14,7 @@ from bemcontact.analysis import solve as analysis
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 PROBLEMS = {"held": (HELD, HELD_CASES), "free": (FREE, FREE_CASES)}
 names = st.sampled_from([*PROBLEMS])

@@ -10,7 +10,7 @@ import pytest
 
 from bemcontact.analysis.follow import follow
 from bemcontact.parametric.parameter_path import ParameterPath
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]

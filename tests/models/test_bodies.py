@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import bemcontact
-from bemcontact.problem import Values
+from bemcontact.problems import Values
 
 FOLDER = Path(__file__).parents[2] / "models" / "bodies"
 MANY = "roller_bearing"

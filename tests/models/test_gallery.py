@@ -12,7 +12,7 @@ from bemcontact import spec
 from bemcontact.analysis import compare as comparing
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.result import Result
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 from bemcontact.reference import Score, expected, score
 
 FOLDER = Path(__file__).parents[2] / "models" / "gallery"

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from bemcontact import cli, spec
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.result import Result
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 from bemcontact.reference import expected, score
 
 FOLDER = Path(__file__).parents[2] / "models"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from bemcontact.problem import Material
+from bemcontact.problems import Material
 from bemcontact.reference.closed_forms import (
     BeamOverProp,
     ClosedCrack,

@@ -8,7 +8,7 @@ from known_answers import pin_in_hole
 from messages import assert_one_mistake, assert_states
 
 import bemcontact
-from bemcontact.problem import Material
+from bemcontact.problems import Material
 from bemcontact.reference import Expected, Score, expected, score
 from bemcontact.reference.closed_forms import HertzContact
 from bemcontact.reference.pin_in_hole import LoosePin

@@ -8,7 +8,7 @@ from known_answers import BLOCK, hertz, punch, ring
 
 import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.problem import Table
+from bemcontact.problems import Table
 from bemcontact.reference.positions import Frame, coordinates, foot, in_zone, reach, spacing
 
 

@@ -13,7 +13,7 @@ from scipy.spatial import KDTree
 from several_bodies import block, elastic, polygon, rigid
 from several_bodies import problem as several
 
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 
 def line(name: str, start: list[float], elements: int) -> dict:

@@ -6,7 +6,7 @@ from bemcontact.analysis import compare as comparing
 from bemcontact.analysis.mesh_study import MeshStudy
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.options import ComparisonOptions
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 JUDGED = {"accuracy": 0.01, "mesh": {"adapt": False}}
 """A mesh is taken as it is stated, and its errors are estimated and judged."""

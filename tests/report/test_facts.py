@@ -10,7 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 import bemcontact
-from bemcontact.problem import Units
+from bemcontact.problems import Units
 from bemcontact.report.bars import LEAST_SHOWN, accuracy_rows, error_percent, with_bar, without_digits_beyond
 from bemcontact.report.facts import contact_intervals, facts, peak_of, peak_place
 

@@ -2,7 +2,7 @@
 
 from mesh_studies import block
 
-from bemcontact.problem import Circle, DeflectedContour, Field, Plane, Polyline, Spline, Units
+from bemcontact.problems import Circle, DeflectedContour, Field, Plane, Polyline, Spline, Units
 from bemcontact.report import formatting
 
 

@@ -6,7 +6,7 @@ import pytest
 from page_reader import read
 from rich.console import Console
 
-from bemcontact.problem.units import Units
+from bemcontact.problems.units import Units
 from bemcontact.report.study_page import render, rows_in_short, study_shortfall, study_summary, study_verdicts
 from bemcontact.studies.axes import axes_of
 from bemcontact.studies.outputs import Reading

@@ -25,7 +25,7 @@ from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import LocalSearch, Penalty, Status
-from bemcontact.problem import Problem, Units
+from bemcontact.problems import Problem, Units
 from bemcontact.report import comparison_text, contact_words, formatting, problem_text, text
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import facts, zone_forces

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from bemcontact import cli, spec
 from bemcontact.analysis import solve as analysis
 from bemcontact.errors import ProblemError
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 from bemcontact.report import vtk
 
 BLOCK = """\

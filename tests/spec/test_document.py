@@ -1,7 +1,7 @@
 """Documents: places of issues and of overrides."""
 
 from bemcontact.errors import Issue
-from bemcontact.problem.validation import KeyIssue
+from bemcontact.problems.validation import KeyIssue
 from bemcontact.spec.document import Document, Mark, Place, error_text
 
 TOP, KEY, VALUE = Mark(1, 1, "a:1:1"), Mark(2, 1, "a:2:1"), Mark(2, 4, "a:2:4")

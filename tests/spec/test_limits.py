@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import bemcontact
-from bemcontact.problem.geometry import MOST_ELEMENTS, MOST_ENDS
+from bemcontact.problems.geometry import MOST_ELEMENTS, MOST_ENDS
 from bemcontact.spec.yaml_1_2 import DEEPEST, MOST_CHARACTERS, MOST_KEYS, MOST_VALUES
 
 SOON = 5.0

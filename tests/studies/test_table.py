@@ -7,7 +7,7 @@ from pathlib import Path
 import pyarrow.parquet
 import pytest
 
-from bemcontact.problem.units import Units
+from bemcontact.problems.units import Units
 from bemcontact.studies import table
 from bemcontact.studies.axes import axes_of
 from bemcontact.studies.outputs import Reading

@@ -15,7 +15,7 @@ from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
-from bemcontact.problem.surface_lines import Polyline, Spline
+from bemcontact.problems.surface_lines import Polyline, Spline
 from bemcontact.serialization import Internal, Leaf, Pairs, Vector
 
 AGREED = 1e-6

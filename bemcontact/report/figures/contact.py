@@ -13,7 +13,7 @@ from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
 from bemcontact.bem.mesh import BoundaryState, element_curves
 from bemcontact.options import StressMeasure
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 from bemcontact.report.bars import with_bar, without_digits_beyond
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import LEVEL

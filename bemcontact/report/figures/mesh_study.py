@@ -13,7 +13,7 @@ from bemcontact.assessment.convergence import Convergence
 from bemcontact.bem import mesh
 from bemcontact.contact.solution import Trace
 from bemcontact.options import Weights
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
 from bemcontact.report.figures.deformed import draw_deformed
 from bemcontact.report.figures.page import (

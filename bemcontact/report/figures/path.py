@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from bemcontact.arrays import Array
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.mesh_study import plan_of
 from bemcontact.report.figures.page import (

@@ -15,7 +15,7 @@ from scipy.spatial import KDTree
 from bemcontact.analysis.check import contours
 from bemcontact.arrays import Array
 from bemcontact.bem.mesh import Mesh, applied_traction, element_curves
-from bemcontact.problem import (
+from bemcontact.problems import (
     AxisFields,
     BodySurface,
     Circle,

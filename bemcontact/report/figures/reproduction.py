@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bemcontact.analysis.reproduction import PaperStudy, Reproduction, Run, positions
-from bemcontact.problem import Table
+from bemcontact.problems import Table
 from bemcontact.reference import Expected
 from bemcontact.report.figures.mesh_study import WIDTH, plan_of
 from bemcontact.report.figures.page import (

@@ -9,7 +9,7 @@ from scipy.spatial import KDTree
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.problem import BodySurface, DeflectedContour, Problem
+from bemcontact.problems import BodySurface, DeflectedContour, Problem
 from bemcontact.report.figures.page import pieces_of
 from bemcontact.report.figures.problem import surface_lines
 

@@ -14,7 +14,7 @@ import bemcontact
 from bemcontact import GapDesign, Relief, design_gap, spec
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
-from bemcontact.problem import Polyline, Problem, Spline
+from bemcontact.problems import Polyline, Problem, Spline
 
 PUNCH = (Path(__file__).parents[3] / "models" / "gallery" / "flat_punch.yaml").read_text(encoding="utf-8")
 LOAD = "{pressure: 5}"

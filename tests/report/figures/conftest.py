@@ -4,7 +4,7 @@ import pytest
 from drawings import beam_over_a_circle, block_in_a_corner
 
 from bemcontact.analysis import solve as analysis
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 
 PROBLEMS = {"corner": block_in_a_corner, "beam": beam_over_a_circle}
 

@@ -19,7 +19,7 @@ import bemcontact
 from bemcontact.analysis import solve as analysis
 from bemcontact.bem import mesh
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.problem import Problem
+from bemcontact.problems import Problem
 from bemcontact.report import figures
 from bemcontact.report.figures.page import RoundTicks, distance_label, legend_below, new_page, pieces_of
 

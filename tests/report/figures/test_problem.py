@@ -23,7 +23,7 @@ from tool_problems import HELD, HELD_CASES, made
 
 from bemcontact.analysis import solve as analysis
 from bemcontact.bem import mesh
-from bemcontact.problem import DeflectedContour, Problem
+from bemcontact.problems import DeflectedContour, Problem
 from bemcontact.report import figures
 from bemcontact.report.figures.page import GREY
 from bemcontact.report.figures.problem import draw_tools, fills, polygons_of

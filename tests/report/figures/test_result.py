@@ -18,7 +18,7 @@ from bemcontact import spec
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
-from bemcontact.problem import Problem, Units
+from bemcontact.problems import Problem, Units
 from bemcontact.report import figures
 from bemcontact.report.facts import peak_of
 from bemcontact.report.figures.load_cases import shown_cases

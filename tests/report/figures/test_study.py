@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 
-from bemcontact.problem.units import Units
+from bemcontact.problems.units import Units
 from bemcontact.report import figures
 from bemcontact.studies.axes import axes_of
 from bemcontact.studies.outputs import Reading

@@ -1,0 +1,169 @@
+"""Places on edges: those nearest to points, and those that share a normal with points of another boundary."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.problems.curves import Edge, cross
+
+STEEPEST = 0.5
+"""Cosine of the angle between two boundaries from which they may form pairs: small displacements close no wider one."""
+TIE = 1e-9
+"""Difference of a cosine from it that is round-off: boundaries at exactly this angle form no pairs, on any side."""
+CORNER = 1e-6
+"""Sine of the angle between two edges from which their joint is a corner."""
+STEPS = 30
+"""Largest number of Newton's steps to a pair."""
+SETTLED = 1e-9
+"""Change of the fraction of an edge by one of them after which the next one is round-off."""
+LARGEST_TURN = 0.3
+"""Largest turn of the normal of an edge by one step [rad]."""
+AHEAD = 1e-5
+"""Fraction of an edge over which the turn of its normal is measured."""
+MET = 1e-12
+"""Distance of a point from the normal of its pair, over the length of the edge or a coordinate, that is round-off."""
+
+AT_ENDS = 1e-12
+"""Distance from both ends of an edge, over its length, of the places that are taken for them: they have its normal."""
+PARTS = 8
+"""Parts of an edge between whose ends its places are looked at."""
+
+
+class EdgePlaces(NamedTuple):
+    """Places of edges.
+
+    Parameters
+    ----------
+    edge : (k,) number of the edge
+    fraction : (k,) of its length
+    points : (k, 2) [L]
+    normals : (k, 2) outward unit normals
+    """
+
+    edge: IntArray
+    fraction: Array
+    points: Array
+    normals: Array
+
+
+def places_at(edges: Sequence[Edge], edge: IntArray, fraction: Array) -> EdgePlaces:
+    """Places at fractions (k,) of the length of edges with these numbers (k,)."""
+    points, normals = np.empty((2, len(edge), 2))
+    for i in sorted({*edge.tolist()}):
+        on = edge == i
+        points[on], normals[on] = edges[i].points(fraction[on]), edges[i].normals(fraction[on])
+    return EdgePlaces(edge, fraction, points, normals)
+
+
+def places_along(edges: Sequence[Edge]) -> EdgePlaces:
+    """Both ends of edges and places between them, one edge after the other."""
+    at = np.clip(np.linspace(0.0, 1.0, PARTS + 1), AT_ENDS, 1 - AT_ENDS)
+    return places_at(edges, np.repeat(np.arange(len(edges)), len(at)), np.tile(at, len(edges)))
+
+
+def nearest_on(edges: Sequence[Edge], points: Array) -> EdgePlaces:
+    """Places of edges that are nearest to points (k, 2) [L]."""
+    fractions = np.array([edge.curve.nearest(points) for edge in edges])
+    places = np.array([edge.points(at) for edge, at in zip(edges, fractions, strict=True)])
+    number = np.hypot(*np.moveaxis(points - places, 2, 0)).argmin(axis=0)
+    return places_at(edges, number, fractions[number, np.arange(len(points))])
+
+
+def curvatures(edges: Sequence[Edge], places: EdgePlaces) -> Array:
+    """Curvature (k,) [1/L] of edges at places, positive where the body is convex."""
+    found = np.empty(len(places.edge))
+    for i in sorted({*places.edge.tolist()}):
+        on, curve = places.edge == i, edges[i].curve
+        at, ahead = places.fraction[on], np.where(places.fraction[on] > 0.5, -AHEAD, AHEAD)
+        found[on] = (curve.tangent_angle(at + ahead) - curve.tangent_angle(at)) / (ahead * curve.length)
+    return found
+
+
+class NormalWeight(NamedTuple):
+    """Weight of the normals of a boundary in common ones: none at its corners, where it has two, and little beside.
+
+    Parameters
+    ----------
+    most : the largest weight
+    corners : (j, 3) x, y of corners [L], and the distance [L] from which they do not matter
+    """
+
+    most: float
+    corners: Array
+
+    def at(self, points: Array) -> Array:
+        """Weight (k,) at points (k, 2) [L]."""
+        away = np.hypot(*np.moveaxis(points[:, None] - self.corners[:, :2], 2, 0)) / self.corners[:, 2]
+        return self.most * np.prod(1 - (1 - np.minimum(away, 1.0) ** 2) ** 4, axis=1)
+
+
+def bent_joints(edges: Sequence[Edge], others: Sequence[Edge]) -> Array:
+    """Corners (j, 3) between two edges both of which face other edges there, with the length of the shorter edge."""
+    found = []
+    for before in edges:
+        for after in edges:
+            normals = np.concatenate([before.normals(np.ones(1)), after.normals(np.zeros(1))])
+            if before.end == after.start and abs(cross(*normals)) > CORNER:
+                facing = nearest_on(others, np.array([before.end])).normals
+                if (normals @ facing[0] < -STEEPEST - TIE).all():
+                    found.append((*before.end, min(before.length, after.length)))
+    return np.array(found).reshape(-1, 3)
+
+
+def paired_on(
+    edges: Sequence[Edge], start: EdgePlaces, points: Array, own: Array, weights: tuple[NormalWeight, NormalWeight]
+) -> tuple[EdgePlaces, Array, BoolArray]:
+    """Places that form pairs with points (k, 2) [L]: each point is on the common normal of both boundaries there.
+
+    The common normal is the mean of the normal `own` (k, 2) into the body of the point and of that of the place, with
+    the weights of both boundaries. The search begins at a place near the pair. Where no place on its edge forms one,
+    the others are looked at.
+
+    Returns
+    -------
+    the places (j,), the common normals (j, 2), and which points (k,) have a pair
+    """
+    edge, fraction, met = start.edge.copy(), start.fraction.copy(), np.zeros(len(points), bool)
+    weighted, other_weight = weights[0].at(points)[:, None] * own, weights[1]
+    for other in (None, *range(len(edges))):
+        rows = np.flatnonzero(~met)
+        if other is not None and len(rows):
+            edge[rows], fraction[rows] = other, edges[other].curve.nearest(start.points[rows])
+        for i in sorted({*edge[rows].tolist()}):
+            on = rows[edge[rows] == i]
+            fraction[on], met[on] = _on_edge(edges[i], fraction[on], points[on], weighted[on], other_weight)
+            met[on] &= np.sum(own[on] * edges[i].normals(fraction[on]), axis=1) > 0
+    found = places_at(edges, edge[met], fraction[met])
+    return found, _common(weighted[met], found.normals, other_weight.at(found.points)), met
+
+
+def _common(own: Array, other: Array, weight: Array) -> Array:
+    """Common unit normals (k, 2) of weighted ones and of others with weights; the latter where both are opposite."""
+    mean = own + weight[:, None] * other
+    size = np.hypot(*mean.T)[:, None]
+    return np.where(size > 0, mean / np.where(size > 0, size, 1.0), other)
+
+
+def _on_edge(edge: Edge, fraction: Array, points: Array, own: Array, weight: NormalWeight) -> tuple[Array, BoolArray]:
+    """Fractions (k,) of pairs on an edge by Newton's method, and which of them are pairs."""
+    fraction, left = fraction.copy(), np.arange(len(points))
+    for _ in range(STEPS):
+        at, ahead = fraction[left], np.where(fraction[left] > 0.5, -AHEAD, AHEAD)
+        both = np.concatenate([at, at + ahead])
+        (places, there), along = np.split(edge.points(both), 2), edge.directions(both)
+        (other, turned), offset = np.split(along[:, ::-1] * (1.0, -1.0), 2), points[left] - places
+        common = _common(own[left], other, weight.at(places))
+        turn = cross(common, _common(own[left], turned, weight.at(there))) / ahead
+        rate = cross(common, along[: len(at)]) * edge.length + turn * np.sum(common * offset, axis=1)
+        most = LARGEST_TURN * AHEAD / np.maximum(abs(cross(other, turned)), LARGEST_TURN * AHEAD)
+        step = np.clip(cross(common, offset) / np.where(rate == 0, np.inf, rate), -most, most)
+        moved = (at + step) % 1.0 if edge.start == edge.end else np.clip(at + step, 0.0, 1.0)
+        fraction[left] = moved
+        left = left[abs(moved - at) > SETTLED]
+        if not len(left):
+            break
+    places = edge.points(fraction)
+    off = cross(_common(own, edge.normals(fraction), weight.at(places)), points - places)
+    return fraction, abs(off) <= MET * max(edge.length, abs(points).max(initial=0.0))

@@ -1,0 +1,275 @@
+"""Edges as the user gives them: lines, circular arcs and elliptic arcs, each with its number of elements."""
+
+from math import atan2, hypot, pi, radians
+from typing import Annotated, Any, ClassVar, Literal, Self, get_args
+
+from pydantic import Field, PlainValidator, Strict, WithJsonSchema, model_validator
+
+from bemcontact.errors import KeyPath
+from bemcontact.problems.curves import CircularArc, Curve, EllipticArc, Segment, unit_vector
+from bemcontact.problems.tagged_union import TaggedUnion
+from bemcontact.problems.validation import (
+    LARGEST_STATED,
+    Count,
+    Flag,
+    Name,
+    Number,
+    Point,
+    Positive,
+    PositivePair,
+    SpecModel,
+    invalid,
+)
+from bemcontact.problems.wording import described
+
+MOST_ELEMENTS = 10_000
+"""Largest number of elements of a problem; its dense matrix takes 13 gigabytes."""
+MOST_ENDS = 100
+"""Largest number of places where elements of an edge must end that does not state its elements."""
+
+WHOLE_TURN = 360 * (1 + 1e-12)
+"""Largest difference of two angles in degrees: that of a turned circle is a whole turn up to round-off."""
+SIDES = ("start", "end", "both", "middle")
+"""Names of the places of the short elements of an edge."""
+
+
+def _place(value: Any) -> float | Point:
+    """Validate a place on an edge: a fraction of its length or a point."""
+    numbers = value if isinstance(value, list | tuple) else [value]
+    if not all(isinstance(number, int | float) and not isinstance(number, bool) for number in numbers):
+        raise invalid(f"expected a fraction of the length such as 0.4, or a point [x, y]; found {described(value)}")
+    if isinstance(value, list | tuple):
+        if len(value) != 2 or not all(abs(number) <= LARGEST_STATED for number in value):
+            raise invalid(f"expected two coordinates such as [0.0, 1.5]; found {described(value)}")
+        return float(value[0]), float(value[1])
+    if not 0 < value < 1:
+        raise invalid(f"a fraction of the length must be between 0 and 1, found {described(value)}")
+    return float(value)
+
+
+def _towards(value: Any) -> str | float | Point:
+    """Validate the place of the short elements."""
+    if isinstance(value, str):
+        if value not in SIDES:
+            expected = f"{', '.join(SIDES)}, a fraction of the length, or a point [x, y]"
+            raise invalid(f"expected {expected}; found {described(value)}")
+        return value
+    return _place(value)
+
+
+_PLACE_SCHEMA: dict[str, Any] = {
+    "type": ["number", "array"],
+    "exclusiveMinimum": 0,
+    "exclusiveMaximum": 1,
+    "items": {"type": "number"},
+    "minItems": 2,
+    "maxItems": 2,
+}
+Place = Annotated[float | Point, PlainValidator(_place), WithJsonSchema(_PLACE_SCHEMA)]
+"""A place on an edge: a fraction of its length from its start, or a point (x, y)."""
+Towards = Annotated[
+    str | float | Point,
+    PlainValidator(_towards),
+    WithJsonSchema({"anyOf": [{"enum": [*SIDES]}, _PLACE_SCHEMA]}),
+]
+"""The place of the short elements."""
+
+
+class Grading(SpecModel):
+    """Element lengths in geometric progression along an edge."""
+
+    example: ClassVar[str] = "{ratio: 4, towards: end}"
+
+    ratio: Annotated[float, Strict(), Field(ge=1, le=1e6)]
+    """The ratio of the longest element to the shortest, such as 4."""
+    towards: Towards
+    """The place of the short elements: start, end, both, middle, a fraction of the length of the edge, or a point
+    [x, y] on it. An element ends at a fraction or point."""
+
+
+class _EdgeBase(SpecModel):
+    """Base class of all edges."""
+
+    name: Name
+    """The name of the edge, by which conditions and contact zones refer to it."""
+    elements: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] | None = None
+    """The number of boundary elements along the edge, such as elements: 8. Best left out: a mesh is then found for the
+    accuracy asked."""
+    grading: Grading | None = None
+    """The grading of the stated elements; equal lengths if left out."""
+    ends_at: tuple[Place, ...] = ()
+    """The places where elements must end: fractions of the length of the edge, or points [x, y] on it. The nearest
+    element ends move to these places, and the others in proportion. At most 100, unless elements are stated."""
+
+    @model_validator(mode="after")
+    def _graded_elements(self) -> Self:
+        """Refuse a grading, and very many ends, of elements that are not stated."""
+        if self.elements is None and self.grading is not None:
+            raise invalid("grading needs elements; give a number of elements, or leave grading out")
+        if self.elements is None and len(self.ends_at) > MOST_ENDS:
+            given = f"ends_at has {len(self.ends_at)} places, more than {MOST_ENDS}"
+            raise invalid(f"{given}; leave places out, or give the number of elements of the edge too")
+        return self
+
+    @property
+    def places(self) -> tuple[tuple[KeyPath, Place], ...]:
+        """All places where elements must end, each with its key path."""
+        places: list[tuple[KeyPath, Place]] = [(("ends_at", i), place) for i, place in enumerate(self.ends_at)]
+        if self.grading is not None and not isinstance(self.grading.towards, str):
+            places.append((("grading", "towards"), self.grading.towards))
+        return tuple(places)
+
+
+class Line(_EdgeBase):
+    """A straight edge. An end that is left out is taken from the neighboring edge."""
+
+    example: ClassVar[str] = "{name: bottom, start: [0, 0]}"
+
+    kind: Literal["line"] = "line"
+    """The shape of the edge: line, arc, or ellipse."""
+    start: Point | None = None
+    """The first point [x, y]; if left out, the end of the previous edge."""
+    end: Point | None = None
+    """The last point [x, y]; if left out, the start of the next edge."""
+
+    def own_ends(self) -> tuple[Point | None, Point | None]:
+        """Both ends; None for an end that is left out."""
+        return self.start, self.end
+
+    def has_coordinates(self) -> bool:
+        """Whether the ends are given by coordinates, not by angles."""
+        return True
+
+    def curve(self, start: Point, end: Point) -> Curve:
+        """The line between two points."""
+        return Segment(start=start, end=end)
+
+
+class Arc(_EdgeBase):
+    """A circular edge: center, radius and angles, or center, start, end and direction."""
+
+    example: ClassVar[str] = "{name: rim, kind: arc, center: [0, 5], radius: 5, angles: [-90, 0]}"
+
+    kind: Literal["arc"] = "arc"
+    """The shape of the edge: line, arc, or ellipse."""
+    center: Point
+    """The center [x, y]."""
+    radius: Positive | None = None
+    """The radius; only together with angles."""
+    angles: Point | None = None
+    """The polar angles [first, last] in degrees; counterclockwise if the last angle is the larger one."""
+    start: Point | None = None
+    """The first point [x, y] of an arc without angles; if left out, the end of the previous edge."""
+    end: Point | None = None
+    """The last point [x, y] of an arc without angles; if left out, the start of the next edge."""
+    clockwise: Flag = False
+    """Whether an arc without angles runs clockwise."""
+
+    @model_validator(mode="after")
+    def _one_form(self) -> Self:
+        """Refuse a mixture of angles and ends."""
+        by_angles, by_points = "radius and angles", "start, end and clockwise"
+        if (self.radius is None) != (self.angles is None):
+            given, missing = ("angles", "radius") if self.radius is None else ("radius", "angles")
+            raise invalid(f"an arc with {given} needs {missing} too; give both, or {by_points} instead")
+        if self.angles is not None:
+            if self.start is not None or self.end is not None or self.clockwise:
+                raise invalid(f"an arc has either {by_angles}, or {by_points}, not both; remove one form")
+            _check_sweep(self.angles)
+        return self
+
+    def own_ends(self) -> tuple[Point | None, Point | None]:
+        """Both ends; None for an end that is left out."""
+        if self.radius is None or self.angles is None:
+            return self.start, self.end
+        first, last = (_moved(self.center, self.radius, unit_vector(angle)) for angle in self.angles)
+        return first, last
+
+    def has_coordinates(self) -> bool:
+        """Whether the ends are given by coordinates, not by angles."""
+        return self.angles is None
+
+    def curve(self, start: Point, end: Point) -> Curve:
+        """The arc by its angles, or between two points."""
+        if self.radius is not None and self.angles is not None:
+            first, last = map(radians, self.angles)
+            return CircularArc(
+                center=self.center, radii=(self.radius, self.radius), start_angle=first, sweep=last - first
+            )
+        (x, y), (x0, y0), (x1, y1) = self.center, start, end
+        first, last = atan2(y0 - y, x0 - x), atan2(y1 - y, x1 - x)
+        sweep = -((first - last) % (2 * pi)) if self.clockwise else (last - first) % (2 * pi)
+        radii = hypot(x0 - x, y0 - y), hypot(x1 - x, y1 - y)
+        return CircularArc(center=self.center, radii=radii, start_angle=first, sweep=sweep)
+
+
+class EllipseArc(_EdgeBase):
+    """An elliptic edge: center + rotated (a cos t, b sin t)."""
+
+    example: ClassVar[str] = "{name: rim, kind: ellipse, center: [0, 5], semi_axes: [8, 5], angles: [-90, 0]}"
+
+    kind: Literal["ellipse"] = "ellipse"
+    """The shape of the edge: line, arc, or ellipse."""
+    center: Point
+    """The center [x, y]."""
+    semi_axes: PositivePair
+    """The semi-axes [a, b]."""
+    angles: Point
+    """The eccentric angles t [first, last] in degrees; counterclockwise if the last angle is the larger one."""
+    rotation: Number = 0.0
+    """The angle in degrees from the x axis to the axis a."""
+
+    @model_validator(mode="after")
+    def _at_most_one_turn(self) -> Self:
+        """Refuse more than a full turn."""
+        _check_sweep(self.angles)
+        return self
+
+    def own_ends(self) -> tuple[Point | None, Point | None]:
+        """Both ends, computed from the angles."""
+        (a, b), (c, s) = self.semi_axes, unit_vector(self.rotation)
+        ends = []
+        for x, y in map(unit_vector, self.angles):
+            ends.append((self.center[0] + c * a * x - s * b * y, self.center[1] + s * a * x + c * b * y))
+        return ends[0], ends[1]
+
+    def has_coordinates(self) -> bool:
+        """Whether the ends are given by coordinates, not by angles."""
+        return False
+
+    def curve(self, start: Point, end: Point) -> Curve:
+        """The elliptic arc; its ends follow from the angles."""
+        first, last = map(radians, self.angles)
+        return EllipticArc(
+            center=self.center,
+            semi_axes=self.semi_axes,
+            rotation=radians(self.rotation),
+            start_angle=first,
+            sweep=last - first,
+        )
+
+
+def _check_sweep(angles: Point) -> None:
+    """Refuse an arc without length, or of more than a full turn."""
+    sweep = abs(angles[1] - angles[0])
+    if not 0 < sweep <= WHOLE_TURN:
+        raise invalid(f"angles must differ by more than 0 and at most 360 degrees; found {list(angles)}")
+
+
+def _moved(center: Point, distance: float, direction: Point) -> Point:
+    return center[0] + distance * direction[0], center[1] + distance * direction[1]
+
+
+AnyEdge = Line | Arc | EllipseArc
+"""An edge of any shape."""
+OTHER_KINDS = {
+    "circle": "a full circle is kind: arc with center, radius and angles: [0, 360], and a hole has angles: [360, 0]",
+    "polyline": "give each straight piece as an edge of its own, with a name and its start",
+}
+"""Words that are no kinds of edges -> what to write instead."""
+EdgeSpec = Annotated[
+    AnyEdge, TaggedUnion(what="an edge", members=get_args(AnyEdge), default="line", other_kinds=OTHER_KINDS)
+]
+"""An edge whose class is chosen by the key `kind`."""
+LoopSpec = Annotated[tuple[EdgeSpec, ...], Field(min_length=1)]
+"""Edges in order: each edge starts at the end of the previous one, and the last one closes the loop."""

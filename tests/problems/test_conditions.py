@@ -1,0 +1,73 @@
+"""Conditions and loads: fields as polynomials, and contradictions that are refused."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bemcontact.errors import ProblemError
+from bemcontact.problems import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
+
+NUMBER = st.floats(-100, 100)
+
+
+@given(NUMBER, NUMBER)
+def test_field_is_the_polynomial_of_its_keys(x, y):
+    field = Field(constant=1, x=2, y=3, xx=4, xy=5, yy=6)
+    value = field.at(np.array([[x, y]]))[0]
+    assert value == pytest.approx(1 + 2 * x + 3 * y + 4 * x**2 + 5 * x * y + 6 * y**2, rel=1e-12, abs=1e-9)
+
+
+def test_number_is_a_constant_field():
+    condition = Condition.model_validate({"pressure": 50.625})
+    assert condition.pressure == Field(constant=50.625)
+    np.testing.assert_array_equal(condition.pressure.at(np.zeros((3, 2))), 50.625)
+
+
+def test_axes_that_are_given_are_listed():
+    assert AxisFields().given == ()
+    assert AxisFields(y=Field(constant=0)).given == ("y",)
+
+
+def test_displacement_along_one_axis_goes_with_traction_along_the_other():
+    condition = Condition(displacement=AxisFields(x=Field(constant=0)), traction=AxisFields(y=Field(constant=1)))
+    assert (condition.displacement.given, condition.traction.given) == (("x",), ("y",))
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({}, "the condition is empty"),
+        ({"displacement": {}}, "the condition is empty"),
+        ({"pressure": 1, "traction": {"x": 1}}, "traction cannot be given too"),
+        ({"pressure": 1, "displacement": {"x": 1}}, "displacement cannot be given too"),
+        ({"displacement": {"y": 0}, "traction": {"y": 1}}, "both displacement and traction are given along y"),
+        ({"traction": {"z": 1}}, "traction.z: unknown key 'z'"),
+        ({"pressure": {}}, "pressure: the mapping is empty"),
+        ({"pressure": True}, "pressure: expected a number, or a mapping"),
+        ({"pressure": {"xxx": 1}}, "pressure.xxx: unknown key 'xxx'; did you mean 'xx'?"),
+    ],
+)
+def test_contradictory_and_empty_conditions_are_refused(keys, words):
+    with pytest.raises(ProblemError) as caught:
+        Condition(**keys)
+    assert words in str(caught.value)
+
+
+def test_loads_are_absent_unless_given():
+    assert Loads() == Loads(gravity=None, centrifugal=None, temperature=None)
+    assert Centrifugal(density=1, angular_velocity=2).center == (0, 0)
+
+
+def test_density_is_positive():
+    with pytest.raises(ProblemError, match=r"gravity\.density: must be greater than 0, found 0"):
+        Loads(gravity={"density": 0, "acceleration": [0, -9.81]})
+    with pytest.raises(ProblemError, match="acceleration: expected two numbers"):
+        Gravity(density=1, acceleration=-9.81)
+
+
+def test_temperature_is_linear_in_the_coordinates():
+    change = Field(constant=20, x=1, y=-1)
+    assert Temperature(expansion=1e-5, change=change).change == change
+    with pytest.raises(ProblemError, match="may have constant, x and y only; leave out xx, yy"):
+        Temperature(expansion=1e-5, change=Field(xx=1, yy=1))

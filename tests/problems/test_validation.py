@@ -1,0 +1,30 @@
+"""Messages on keys in the wrong place."""
+
+import pytest
+
+from bemcontact.errors import ProblemError
+from bemcontact.problems import Condition, Problem
+from bemcontact.problems.examples import homes
+
+
+@pytest.mark.parametrize(("key", "place"), [("state", "material"), ("gravity", "loads"), ("adapt", "mesh")])
+def test_a_key_in_the_wrong_place_is_told_where_it_belongs(key: str, place: str):
+    """The places are those of the documented schema."""
+    with pytest.raises(ProblemError, match=f"'{key}' belongs under {place}"):
+        Problem(**{"name": "a", key: 1})
+
+
+def test_every_key_of_the_schema_is_found_where_its_mapping_has_it():
+    """The schema that editors use is made by another library from the same classes."""
+    schema = Problem.model_json_schema()
+    for name, value in schema["properties"].items():
+        assert "" in homes(Problem, name)
+        reference = value.get("$ref", "").rpartition("/")[2]
+        for key in schema["$defs"].get(reference, {}).get("properties", {}):
+            assert name in homes(Problem, key)
+
+
+@pytest.mark.parametrize("word", ["force", "load"])
+def test_a_force_on_an_edge_is_told_to_be_a_traction(word: str):
+    with pytest.raises(ProblemError, match="force per area"):
+        Condition(**{word: {"y": -100}})
