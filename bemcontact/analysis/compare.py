@@ -2,11 +2,20 @@
 
 import time
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import Unpack
+from dataclasses import fields, replace
+from typing import Unpack, cast
 
 from bemcontact.analysis.mesh_study import MeshLevel, MeshStudy, Settings
-from bemcontact.analysis.solve import Prepared, Progress, Stopwatch, assessed, ensure_acting, prepare
+from bemcontact.analysis.solve import (
+    Prepared,
+    Progress,
+    Stopwatch,
+    asked,
+    assessed,
+    ensure_acting,
+    ensure_kind,
+    prepare,
+)
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Attempt
 from bemcontact.blas_threads import one_thread
@@ -16,12 +25,16 @@ from bemcontact.errors import KeyPath, NotConvexError, OptionError, SolverError
 from bemcontact.formulations import FORMULATIONS, qp3
 from bemcontact.formulations.multistart import multistart
 from bemcontact.options import (
+    ASKING,
     COMPARED,
+    AskingKeywords,
+    ComparingKeywords,
     ComparisonKeywords,
     ComparisonOptions,
     FormulationName,
     SolveOptions,
     Weights,
+    ensure_known,
     ensure_whole,
 )
 from bemcontact.problems.key_path import parsed_path
@@ -43,7 +56,7 @@ def compare(
     penalties: Sequence[float] | float | None = None,
     *,
     progress: Progress | None = None,
-    **options: Unpack[ComparisonKeywords],
+    **options: Unpack[ComparingKeywords],
 ) -> Comparison:
     """Solve a contact problem by several formulations and compare each with the direct solution.
 
@@ -55,7 +68,7 @@ def compare(
     penalties : μ of QP2, one or several
     progress : called with two texts, the name of a stage and how far it has come, which is empty when it begins
     options : starts and seed of random starts of QP1 and QP2, made besides the null start to count how many end at the
-        solution
+        solution; and variant, set, case, accuracy and refine, as of `bemcontact.solve`
 
     Returns
     -------
@@ -70,8 +83,13 @@ def compare(
         The problem has no answer, or does not carry the weights asked for.
     """
     ensure_callable(progress, "progress")
-    read = ComparisonOptions.of(formulations, weights, penalties, **options)
+    ensure_known(options, (*(item.name for item in fields(ComparisonOptions)), *ASKING))
+    asking = cast(AskingKeywords, {key: value for key, value in options.items() if key in ASKING})
+    others = cast(ComparisonKeywords, {key: value for key, value in options.items() if key not in ASKING})
+    read = ComparisonOptions.of(formulations, weights, penalties, **others)
     watch = Stopwatch(progress=progress)
+    ensure_kind(problem)
+    problem = asked(problem, asking)
     ensure_acting(problem)
     return compared_on(read, prepare(problem, watch, errors=False), watch).comparison
 

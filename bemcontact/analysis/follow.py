@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from numbers import Real
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.adaptivity.moved_pairs import may_move
 from bemcontact.analysis.path_states import FollowedPath, errors_at_breakpoints
 from bemcontact.analysis.penetration import penetration_on_path
-from bemcontact.analysis.solve import ensure_acting, ensure_kind
+from bemcontact.analysis.solve import asked, ensure_acting, ensure_kind
 from bemcontact.analysis.variation import Variation, case_of
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
@@ -25,6 +25,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
 from bemcontact.errors import Issue, KeyPath, ProblemError, SingularSystemError, SolverError
 from bemcontact.formulations import complementarity
+from bemcontact.options import AskingKeywords
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.parametric.path import COMMON, SAME, ensure_same_body, load_path
 from bemcontact.parametric.sensitivity import Sensitivities
@@ -48,7 +49,9 @@ NOTHING = 1e-13
 
 
 @one_thread
-def follow(problem: Problem, key: str, to: float, start: float | None = None) -> ParameterPath:
+def follow(
+    problem: Problem, key: str, to: float, start: float | None = None, **asking: Unpack[AskingKeywords]
+) -> ParameterPath:
     """Follow the contact state while one value of the problem changes, exactly.
 
     Parameters
@@ -58,6 +61,7 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
         loads must depend on it linearly, and nothing else
     to : value at the end of the path
     start : value at its beginning, that of the problem if not given
+    asking : variant, set, case, accuracy and refine, as of `bemcontact.solve`
 
     Returns
     -------
@@ -70,6 +74,7 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
         contact state at either end.
     """
     ensure_kind(problem, Problem)
+    problem = asked(problem, asking)
     text_of_argument(key, "key")
     end = real_number(to, f"{key}: the value at the end of the path (to)")
     begin = stated_value(problem, key) if start is None else real_number(start, f"{key}: the start value")
@@ -94,7 +99,9 @@ def follow(problem: Problem, key: str, to: float, start: float | None = None) ->
 
 @one_thread
 def sensitivities(
-    problem: Problem | CondensedContact, changes: Mapping[str, Change] | Sequence[str] | None = None
+    problem: Problem | CondensedContact,
+    changes: Mapping[str, Change] | Sequence[str] | None = None,
+    **asking: Unpack[AskingKeywords],
 ) -> Sensitivities:
     """Differentiate the contact state of a problem.
 
@@ -105,6 +112,7 @@ def sensitivities(
         "initial_gap[i]" for the gap at point i, and, of a `Problem`, also paths to a `young_modulus`, and to any value
         on which gaps and loads depend linearly, and nothing else. If not given, `CondensedContact.changes`. Pairs of
         points of several bodies are kept
+    asking : variant, set, case, accuracy and refine, as of `bemcontact.solve`
 
     Returns
     -------
@@ -118,6 +126,8 @@ def sensitivities(
     SingularSystemError
         If the equations of contact are singular to working precision.
     """
+    ensure_kind(problem)
+    problem = asked(problem, asking)
     ensure_acting(problem)
     given = changes if changes is None or isinstance(changes, Mapping) else _keys(changes)
     if isinstance(problem, CondensedContact):

@@ -5,21 +5,21 @@ from typing import Unpack
 
 from bemcontact.analysis.result import Result, ResultRecord
 from bemcontact.analysis.solve import (
-    AskedAccuracy,
     Prepared,
     Progress,
     Stopwatch,
-    asking,
+    asked,
     assessed,
     ensure_kind,
     mesh_of,
+    read_options,
 )
 from bemcontact.assessment.accuracy import together
 from bemcontact.blas_threads import one_thread
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.multistart import solve_contact
 from bemcontact.formulations.starts import with_start_read
-from bemcontact.options import FormulationName, SolveKeywords, SolveOptions, Weights
+from bemcontact.options import FormulationName, SolveOptions, SolvingKeywords, Weights
 from bemcontact.problems.problem import Problem
 from bemcontact.serialization import Record, Recorded
 from bemcontact.version import __version__
@@ -107,16 +107,14 @@ def solve_cases(
     problem: Problem,
     formulation: FormulationName | str = FormulationName.COMPLEMENTARITY,
     weights: Weights | str = Weights.TRIBUTARY,
-    *,
-    accuracy: AskedAccuracy = "stated",
-    **options: Unpack[SolveKeywords],
+    **options: Unpack[SolvingKeywords],
 ) -> CaseResults:
     """Solve all load cases and combinations of a problem by one formulation; the body is condensed once.
 
     Parameters
     ----------
     problem : with load cases
-    formulation, weights, accuracy, options : as of `bemcontact.solve`; all cases share one mesh
+    formulation, weights, options : as of `bemcontact.solve`; all cases share one mesh
 
     Returns
     -------
@@ -127,9 +125,9 @@ def solve_cases(
     ProblemError
         If the problem states no load case, or one of them has no answer; otherwise as of `bemcontact.solve`.
     """
-    read = SolveOptions.of(formulation, weights, **options)
+    read, asking = read_options(formulation, weights, options)
     ensure_kind(problem, Problem)
-    return solve_cases_with(read, asking(problem, accuracy))
+    return solve_cases_with(read, asked(problem, asking))
 
 
 @one_thread

@@ -3,8 +3,8 @@
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
-from typing import Literal, Self, Unpack
+from dataclasses import dataclass, field, fields
+from typing import Self, TypeVar, Unpack, cast
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.singularities import Singularity
@@ -26,10 +26,14 @@ from bemcontact.errors import Issue, ProblemError
 from bemcontact.formulations.multistart import multistart, solve_contact
 from bemcontact.formulations.starts import with_start_read
 from bemcontact.options import (
+    ASKING,
     STARTS,
+    AskingKeywords,
     FormulationName,
+    SearchKeywords,
     SolveKeywords,
     SolveOptions,
+    SolvingKeywords,
     StartName,
     StatementKeywords,
     Weights,
@@ -40,10 +44,8 @@ from bemcontact.problems.problem import Problem
 
 Progress = Callable[[str, str], object]
 """Takes the name of a stage and how far it has come; the latter is empty when the stage begins."""
-
-
-AskedAccuracy = float | Literal["stated", "default"] | None
-"""A relative accuracy as `Problem.accuracy` has it; "stated" is that of the problem."""
+NOT_ASKED: dict[str, object] = {"accuracy": "stated", "refine": 1}
+"""Values of keywords that ask for nothing; of the others it is None."""
 
 
 @dataclass(kw_only=True)
@@ -68,13 +70,13 @@ class Stopwatch:
 
 
 @one_thread
-def condense(problem: Problem, *, accuracy: AskedAccuracy = "stated") -> CondensedContact:
+def condense(problem: Problem, **asking: Unpack[AskingKeywords]) -> CondensedContact:
     """Condense a body to its contact points.
 
     Parameters
     ----------
     problem : Problem
-    accuracy : relative, for which a mesh is found, in place of that of the problem; None if the stated mesh is wanted
+    asking : variant, set, case, accuracy and refine, as of `bemcontact.solve`; the accuracy None means the stated mesh
 
     Returns
     -------
@@ -90,7 +92,7 @@ def condense(problem: Problem, *, accuracy: AskedAccuracy = "stated") -> Condens
         If the equations of the body have no unique solution.
     """
     ensure_kind(problem, Problem)
-    return meshed(asking(problem, accuracy).without_joints(), errors=False).condensation.contact
+    return meshed(asked(problem, asking).without_joints(), errors=False).condensation.contact
 
 
 def ensure_kind(problem: object, *kinds: type) -> None:
@@ -101,10 +103,36 @@ def ensure_kind(problem: object, *kinds: type) -> None:
         raise ProblemError(f"a {names} is needed, found {shown(problem)}; bemcontact.load reads one from a file")
 
 
-def asking(problem: Problem, accuracy: AskedAccuracy) -> Problem:
-    """The problem with another accuracy, unless that of the problem is wanted."""
-    as_stated = isinstance(accuracy, str) and accuracy == "stated"
-    return problem if as_stated or accuracy is problem.accuracy else problem.with_value("accuracy", accuracy)
+Stated = TypeVar("Stated", Problem, CondensedContact, Problem | CondensedContact)
+
+
+def asked(problem: Stated, asking: AskingKeywords) -> Stated:
+    """The problem as it is asked for: another variant, other values, one load case, another accuracy, a finer mesh.
+
+    `OptionError` for an unknown keyword, and `ProblemError` for a condensed problem, in which all of that is decided.
+    """
+    ensure_known(asking, ASKING)
+    given = {key: value for key, value in asking.items() if not _asks_nothing(key, value)}
+    if not isinstance(problem, Problem):
+        for key, value in given.items():
+            message = f"{key} is {shown(value)}, but a condensed problem has its body, loads and mesh; give the Problem"
+            raise ProblemError(message)
+        return problem
+    if "variant" in given:
+        problem = problem.variant(cast(str, asking.get("variant")))
+    if "set" in given:
+        problem = problem.with_values(asking.get("set") or {})
+    if "case" in given:
+        problem = problem.with_case(cast(str, asking.get("case")))
+    if "accuracy" in given and given["accuracy"] is not problem.accuracy:
+        problem = problem.with_value("accuracy", given["accuracy"])
+    return problem.refined(asking.get("refine", 1))
+
+
+def _asks_nothing(key: str, value: object) -> bool:
+    """Whether a value is that of a keyword which is left out."""
+    default = NOT_ASKED.get(key)
+    return value is default or (type(value) is type(default) and value == default)
 
 
 def ensure_acting(problem: Problem | CondensedContact) -> None:
@@ -124,9 +152,8 @@ def solve(
     formulation: FormulationName | str = FormulationName.COMPLEMENTARITY,
     weights: Weights | str = Weights.TRIBUTARY,
     *,
-    accuracy: AskedAccuracy = "stated",
     progress: Callable[[int], object] | None = None,
-    **options: Unpack[SolveKeywords],
+    **options: Unpack[SolvingKeywords],
 ) -> Result:
     """Solve a contact problem by one formulation, and assess the result.
 
@@ -135,10 +162,12 @@ def solve(
     problem : Problem or CondensedContact
     formulation : "complementarity", the direct solver, or "qp3", "qp1" or "qp2"
     weights : of the objective of QP1, QP2 and QP3, a `Weights` or its name
-    accuracy : relative, to which a mesh is found, in place of that of the problem; None: nothing is said about errors
     progress : called after the search from each of several random starts with the number of those done
-    options : penalty, rows, equilibrium, start, seed, starts, max_iterations, polish; `bemcontact.SolveOptions` says
-        what each means, and its default
+    options : named as the options of the command. How it is solved: penalty, rows, equilibrium, start, seed, starts,
+        max_iterations, solver, polish; `bemcontact.SolveOptions` says what each means, and its default. What is asked,
+        in place of what the problem states: variant, its name; set, values by key path as of `Problem.with_values`;
+        case, the name of the load case or combination that acts; accuracy, relative, to which a mesh is found (None:
+        nothing is said about errors); refine, the number of equal parts into which each element is cut
 
     Returns
     -------
@@ -156,13 +185,20 @@ def solve(
         If the formulation needs a convex program and this is none.
     """
     ensure_callable(progress, "progress")
-    read = SolveOptions.of(formulation, weights, **options)
+    read, asking = read_options(formulation, weights, options)
     ensure_kind(problem)
-    if isinstance(problem, Problem):
-        problem = asking(problem, accuracy)
-    elif accuracy != "stated":
-        raise ProblemError(f"accuracy is {shown(accuracy)}, but a condensed problem has its mesh; give the Problem")
-    return solve_with(read, problem, progress)
+    return solve_with(read, asked(problem, asking), progress)
+
+
+def read_options(
+    formulation: FormulationName | str, weights: Weights | str, options: SolvingKeywords
+) -> tuple[SolveOptions, AskingKeywords]:
+    """Options of a solution, and what is asked; `OptionError` as of `SolveOptions`."""
+    ensure_known(options, (*(item.name for item in fields(SolveOptions)), *ASKING))
+    asking, others = (
+        {key: value for key, value in options.items() if (key in ASKING) is wanted} for wanted in (True, False)
+    )
+    return SolveOptions.of(formulation, weights, **cast(SolveKeywords, others)), cast(AskingKeywords, asking)
 
 
 @one_thread
@@ -288,7 +324,7 @@ def random_starts(
     count: int = 100,
     seed: int = 0,
     progress: Callable[[int], object] | None = None,
-    **options: Unpack[StatementKeywords],
+    **options: Unpack[SearchKeywords],
 ) -> RandomStarts:
     """Solve QP1 or QP2 from random starts, and count how often each minimum is found; nothing is polished.
 
@@ -299,7 +335,8 @@ def random_starts(
     weights : of the objective, a `Weights` or its name
     count, seed : of the starts; the same seed gives the same starts
     progress : called after each search with the number of those done
-    options : penalty, rows, equilibrium, max_iterations; `bemcontact.SolveOptions` says what each means
+    options : penalty, rows, equilibrium, max_iterations; `bemcontact.SolveOptions` says what each means. And variant,
+        set, case, accuracy and refine, as of `bemcontact.solve`
 
     Returns
     -------
@@ -311,10 +348,12 @@ def random_starts(
         As of `solve`.
     """
     ensure_callable(progress, "progress")
-    ensure_known(options, StatementKeywords.__annotations__)
+    ensure_known(options, (*StatementKeywords.__annotations__, *ASKING))
     ensure_whole(count, STARTS, 1)
     ensure_whole(seed, "seed", 0)
-    read = SolveOptions.of(formulation, weights, start=StartName.RANDOM, starts=count, seed=seed, **options)
+    random: SolvingKeywords = {**options, "start": StartName.RANDOM, "starts": count, "seed": seed}
+    read, asking = read_options(formulation, weights, random)
     ensure_kind(problem)
+    problem = asked(problem, asking)
     contact = problem if isinstance(problem, CondensedContact) else condense(problem)
     return multistart(contact, read, progress)

@@ -84,21 +84,13 @@ def ensure_whole_fields(options: Any) -> None:
 
 EXPECTED_ACCURACY = "expected a relative accuracy between 0 and 1, such as 0.01 for 1 percent"
 """Beginning of the error of an accuracy that is something else."""
-OF_PROBLEM = {
-    "accuracy": 'with_value("accuracy", 0.003)',
-    "refine": "refined(2)",
-    "case": 'with_case("NAME")',
-    "variant": 'variant("NAME")',
-}
-"""Options of the command line that change the problem, and how a problem is changed so in Python."""
 
 
 def ensure_known(options: Iterable[str], known: Iterable[str]) -> None:
-    """Refuse the name of an option that does not exist; list those that do, or say where it belongs."""
+    """Refuse the name of an option that does not exist; list those that do."""
     known = [*known]
     for name in options:
         if name not in known:
-            meant = get_close_matches(str(name), [*known, *OF_PROBLEM], n=1)
+            meant = get_close_matches(str(name), known, n=1)
             known_words = f"did you mean '{meant[0]}'?" if meant else f"choose from {', '.join(known)}"
-            belongs = f"it belongs to the problem; write problem.{OF_PROBLEM[name]}" if name in OF_PROBLEM else ""
-            raise OptionError(f"there is no option '{name}'; {belongs or known_words}")
+            raise OptionError(f"there is no option '{name}'; {known_words}")

@@ -8,6 +8,7 @@ from typing import Any, Protocol, TypedDict, Unpack, cast, runtime_checkable
 
 from bemcontact.checks.arguments import real_number, shown
 from bemcontact.errors import OptionError, ProblemError
+from bemcontact.options.asking import AskingKeywords
 from bemcontact.options.declaration import STARTS, declared, documented, ensure_known, ensure_whole_fields, named
 
 LEAST_PENALTY, LARGEST_PENALTY = 1e-8, 1e8
@@ -103,7 +104,7 @@ class GivenStart(Protocol):
 
 
 class StatementKeywords(TypedDict, total=False):
-    """Keywords of `bemcontact.random_starts`: types of fields of `SolveOptions`, with names as texts."""
+    """Types of those fields of `SolveOptions` that state a program, with names as texts."""
 
     penalty: float
     rows: Rows | str
@@ -112,18 +113,30 @@ class StatementKeywords(TypedDict, total=False):
 
 
 class ComparisonKeywords(TypedDict, total=False):
-    """Keywords of `bemcontact.compare`: types of fields of `ComparisonOptions`."""
+    """Types of fields of `ComparisonOptions`."""
 
     starts: int | None
     seed: int | None
 
 
 class SolveKeywords(StatementKeywords, ComparisonKeywords, total=False):
-    """Keywords of `bemcontact.solve`: types of fields of `SolveOptions`, with names as texts."""
+    """Types of fields of `SolveOptions`, with names as texts."""
 
     start: GivenStart | os.PathLike[str] | StartName | str | None
     solver: ConvexSolver | str
     polish: bool
+
+
+class SolvingKeywords(SolveKeywords, AskingKeywords, total=False):
+    """Keywords of `bemcontact.solve`: how it is solved, and what is asked."""
+
+
+class SearchKeywords(StatementKeywords, AskingKeywords, total=False):
+    """Keywords of `bemcontact.random_starts`."""
+
+
+class ComparingKeywords(ComparisonKeywords, AskingKeywords, total=False):
+    """Keywords of `bemcontact.compare`."""
 
 
 @documented

@@ -5,11 +5,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
-from bemcontact.analysis.solve import AskedAccuracy, Progress
+from bemcontact.analysis.solve import Progress
 from bemcontact.checks.arguments import ensure_callable, file_path, text_of_argument, whole_number
 from bemcontact.errors import ProblemError
+from bemcontact.options import AskingKeywords
 from bemcontact.problems.problem import Problem
 from bemcontact.report import folder as folders
 from bemcontact.report.study_page import rows_in_short
@@ -69,8 +70,8 @@ def study(
     folder: str | Path | None = None,
     workers: int = 1,
     scheduler: str | None = None,
-    accuracy: AskedAccuracy = "stated",
     progress: Progress | None = None,
+    **asking: Unpack[AskingKeywords],
 ) -> Study:
     """Solve a problem for all combinations of some values, with one row for each.
 
@@ -88,8 +89,8 @@ def study(
     workers : number of processes; 1 solves in this process. With more, a script needs the line
         ``if __name__ == "__main__":``, because each process imports it.
     scheduler : address of a Dask scheduler, on whose workers the members are solved; needs the extra ``dask``
-    accuracy : relative, to which a mesh is found for each member, in place of that of the problem
     progress : called with two texts, the name of the stage and how far it has come
+    asking : variant, set, case, accuracy and refine, as of `bemcontact.solve`; a mesh is found for each member
 
     Returns
     -------
@@ -104,7 +105,7 @@ def study(
         If the folder cannot be written, or holds other files.
     """
     ensure_callable(progress, "progress")
-    plan = study_plan(problem, vary, accuracy)
+    plan = study_plan(problem, vary, **asking)
     shown = chosen(outputs, problem)
     place = None if folder is None else file_path(folder, "folder")
     if scheduler is not None:

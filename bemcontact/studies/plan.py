@@ -6,11 +6,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
 from math import prod
-from typing import Any
+from typing import Any, Unpack
 
-from bemcontact.analysis.solve import AskedAccuracy, asking, ensure_kind
+from bemcontact.analysis.solve import asked, ensure_kind
 from bemcontact.analysis.variation import case_of
 from bemcontact.errors import Issue, OptionError, ProblemError
+from bemcontact.options import AskingKeywords
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.wording import unknown_word
 from bemcontact.studies.axes import CASE, Axis, axes_of, located_in
@@ -131,14 +132,14 @@ def _acts(path: tuple[str | int, ...]) -> bool:
     return path[0] in ACTING or (path[0] == "contact_zones" and path[2:3] == ("surface",))
 
 
-def study_plan(problem: Problem, vary: Mapping[Any, Any], accuracy: AskedAccuracy = "stated") -> StudyPlan:
+def study_plan(problem: Problem, vary: Mapping[Any, Any], **asking: Unpack[AskingKeywords]) -> StudyPlan:
     """Plan a study; each load case is a member by itself where none of them is chosen.
 
     `ProblemError` if a key leads nowhere, or a value is wrong.
     """
     ensure_kind(problem, Problem)
     axes = axes_of(vary)
-    problem = asking(problem, accuracy)
+    problem = asked(problem, asking)
     if not any(axis.of_variants for axis in axes):
         problem = problem.model_copy(update={"variants": {}})
     elif not problem.variants:

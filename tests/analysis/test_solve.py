@@ -457,7 +457,7 @@ def test_an_accuracy_is_asked_for_in_place_of_that_of_the_problem(cylinder):
     assert (fine.accuracy.asked, fine.accuracy.met) == (0.002, True)
     assert fine.degrees_of_freedom > stated.degrees_of_freedom
     assert bemcontact.condense(cylinder, accuracy=0.002).size == fine.contact.size
-    with pytest.raises(bemcontact.ProblemError, match=r"a condensed problem has its mesh"):
+    with pytest.raises(bemcontact.ProblemError, match=r"a condensed problem has its body, loads and mesh"):
         bemcontact.solve(stated.contact, accuracy=0.01)
     with pytest.raises(bemcontact.ProblemError, match=r"^accuracy: "):
         bemcontact.solve(cylinder, accuracy=2.0)

@@ -1,9 +1,11 @@
 """The options of solving and comparing: keywords, uses and documentation follow the fields of one declaration."""
 
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
 from typing import get_args, get_type_hints
 
+import numpy as np
 import pytest
 
 import bemcontact
@@ -16,9 +18,9 @@ from bemcontact.options import (
     SolveOptions,
     StatementKeywords,
 )
-from bemcontact.options.declaration import OF_PROBLEM
 
 MODEL = Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml"
+LOAD = "conditions.top.pressure"
 NAMED_IN_SIGNATURES = {"formulation", "formulations", "weights", "penalties"}
 STARTS_AND_POLISH = {"start", "seed", "starts", "solver", "polish"}
 
@@ -66,10 +68,34 @@ def test_the_docstring_has_the_meaning_of_each_option(options):
     assert all(f"{item.name} : {item.metadata['meaning']}" in words for item in fields(options))
 
 
-@pytest.mark.parametrize("option", OF_PROBLEM)
-def test_an_option_of_the_problem_is_refused_with_the_call_to_write(option: str):
+@pytest.mark.parametrize(
+    "verb",
+    [
+        bemcontact.solve, bemcontact.solve_cases, bemcontact.random_starts, bemcontact.compare, bemcontact.condense,
+        bemcontact.sensitivities, partial(bemcontact.follow, key=LOAD, to=2),
+        partial(bemcontact.study, vary={LOAD: [2]}),
+    ],
+)  # fmt: skip
+def test_each_verb_takes_what_is_asked_by_the_names_of_the_command(verb):
+    """A mistake in each of them is found, in its place; a word that is near to one of them is led to it."""
     problem = bemcontact.load(MODEL)
-    with pytest.raises(OptionError, match=rf"'{option}'.*write problem\.") as refused:
-        bemcontact.compare(problem, **{option: 2})
-    method = str(refused.value).rpartition("problem.")[2].partition("(")[0]
-    assert callable(getattr(problem, method))
+    for asked, words in (
+        ({"variant": "none"}, r"variants: .*none"), ({"set": {"material.nu": 1}}, r"material\.nu"),
+        ({"case": "none"}, r"case: .*none"), ({"accuracy": 2.0}, r"^accuracy: "), ({"refine": 0}, "number of parts"),
+        ({"refin": 2}, "did you mean 'refine'"),
+    ):  # fmt: skip
+        with pytest.raises(bemcontact.ProblemError, match=words):
+            verb(problem, **asked)
+
+
+def test_what_is_asked_of_a_solve_is_what_the_problem_states_then():
+    problem = bemcontact.load(MODEL.parent / "gallery" / "roller_in_v_block.yaml")
+    changes = {"material.young_modulus": 150e3}
+    stated = problem.with_values(changes).with_case("aside").with_value("accuracy", 0.1)
+    asked = bemcontact.solve(problem, set=changes, case="aside", accuracy=0.1)
+    np.testing.assert_array_equal(asked.solution.pressure, bemcontact.solve(stated).solution.pressure)
+    coarse = bemcontact.solve(bemcontact.load(MODEL), variant="paper", refine=2)
+    assert coarse.problem.mesh.refine == 2
+    contact = asked.contact
+    with pytest.raises(bemcontact.ProblemError, match="refine is 2, but a condensed problem"):
+        bemcontact.solve(contact, refine=2)
