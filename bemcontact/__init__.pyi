@@ -53,8 +53,11 @@ from .parametric.path import load_path as load_path
 from .parametric.sensitivity import Sensitivities as Sensitivities
 from .parametric.sensitivity import Sensitivity as Sensitivity
 from .problems.problem import Problem as Problem
+from .problems.problem import problem as problem
 from .runs.study import Study as Study
 from .runs.study import study as study
+from .spec import dump as dump
+from .spec import dumps as dumps
 from .spec import load as load
 from .spec import loads as loads
 from .spec import schema as schema

@@ -50,6 +50,10 @@ class Field(SpecModel):
         """Allow a number or a mapping in the JSON Schema."""
         return {**handler.resolve_ref_schema(handler(schema)), "type": ["number", "object"], "minProperties": 1}
 
+    def as_spec(self) -> Any:
+        """Return the number that a constant field is, else a mapping."""
+        return self.to_dict() if {*self.to_dict()} - {"constant"} else self.constant
+
     def at(self, points: Array) -> Array:
         """Values (k,) at points (k, 2) [L]."""
         x, y = np.asarray(points, float).T

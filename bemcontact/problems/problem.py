@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal, Self
 
+import numpy as np
 from pydantic import (
     ConfigDict,
     Field,
@@ -107,6 +108,12 @@ class Problem(StatedBodies):
         json_schema_extra={"anyOf": [{"required": [*OF_ONE_BODY]}, {"required": ["bodies"]}]},
     )
     root: ClassVar[bool] = True
+    inside: ClassVar[tuple[str, ...]] = (
+        "adapts", "after_motions", "asked_accuracy", "bonded_edges", "bonds", "boundary_of", "condition_path",
+        "edge_conditions", "edges_of", "factors", "is_elastic", "loops", "on_mesh_of", "on_pairs_of", "opposite",
+        "opposite_edges", "part_of", "parts", "reach_of", "several", "sides_of", "to_be_meshed", "tool_action",
+        "touching_bodies", "touching_parts", "volume_loads", "without_joints", "zones",
+    )  # fmt: skip
     other_words: ClassVar[Mapping[str, str]] = {
         "body": "bodies has several bodies by name; an only one has material and boundary at the top level"
     }
@@ -477,3 +484,41 @@ class Problem(StatedBodies):
         for path, value in changes.items():
             data = with_entry(data, existing_path(data, parsed_path(path)), value)
         return type(self)(**data)
+
+
+def problem(parts: Mapping[str, Any]) -> Problem:
+    """Make a problem from a mapping with the keys of a spec.
+
+    Parameters
+    ----------
+    parts : mappings, lists, numbers and texts as YAML has them; also arrays and numbers of NumPy, and objects of
+        `bemcontact.problems` such as ``Material(young_modulus=210e3, poisson_ratio=0.3)``
+
+    Returns
+    -------
+    Problem
+
+    Raises
+    ------
+    ProblemError
+        With an issue and its key path for each mistake.
+    """
+    if not isinstance(parts, Mapping):
+        message = f"the keys of a spec are needed, such as {{'name': …, 'material': …}}; found {shown(parts)}"
+        raise ProblemError(f"{message}; bemcontact.load reads a file, and bemcontact.loads a text")
+    for key in parts:
+        if not isinstance(key, str):
+            raise ProblemError(f"the keys of a spec are texts, such as 'name'; found {shown(key)}")
+    return Problem(**_plain(parts))
+
+
+def _plain(value: Any) -> Any:
+    """A value with the numbers and arrays of NumPy in it as those of Python."""
+    match value:
+        case np.generic() | np.ndarray():
+            return value.tolist()
+        case Mapping():
+            return {key: _plain(part) for key, part in value.items()}
+        case list() | tuple():
+            return [_plain(part) for part in value]
+    return value

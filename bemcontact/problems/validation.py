@@ -38,6 +38,12 @@ The arrays that are computed from a problem have larger numbers, and a limit of 
 numbers, such as moments p L², are below `bemcontact.checks.arguments.LARGEST_NUMBER`."""
 
 
+UNNAMED_KIND = "line"
+"""The kind of an edge that states none."""
+INTERNAL = ("example", "root", "other_words", "inside", "as_spec")
+"""Names of each part of a problem that the package alone uses."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class KeyIssue(Issue):
     """An issue with the last key of the path, not with the value under it."""
@@ -68,6 +74,8 @@ class SpecModel(BaseModel):
     """Whether this is the whole problem."""
     other_words: ClassVar[Mapping[str, str]] = {}
     """Words that are not keys -> what to write instead."""
+    inside: ClassVar[tuple[str, ...]] = ()
+    """Names of this part that the package alone uses."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         """Let the schema of a class have its docstring under ``python -OO`` too."""
@@ -95,6 +103,50 @@ class SpecModel(BaseModel):
             issues = [issue for issue in issues if issue.path[:1] not in [(key,) for key in nameless]]
             issues += [Issue(path=(key,), message=message) for key, message in nameless.items()]
             raise validation_error(cls.__name__, issues) from None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the keys of a spec that state the same: lists, mappings, numbers and texts, without defaults."""
+        return {
+            key: _stated(value)
+            for key, field in type(self).model_fields.items()
+            for value in [getattr(self, key)]
+            if (key == "kind" and value != UNNAMED_KIND) or value != field.get_default(call_default_factory=True)
+        }
+
+    def as_spec(self) -> Any:
+        """Return what a spec has for it: `to_dict`, if there is no shorter form."""
+        return self.to_dict()
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all keys have equal values; what was computed from them does not count."""
+        return type(self) is type(other) and all(
+            getattr(self, key) == getattr(other, key) for key in type(self).model_fields
+        )
+
+    def __hash__(self) -> int:
+        return hash((type(self), *(getattr(self, key) for key in type(self).model_fields)))
+
+    def __dir__(self) -> list[str]:
+        """Names that a user may want: keys and methods, none of pydantic and none that the package alone uses."""
+        hidden = {*INTERNAL, *self.inside}
+        names = (name for name in super().__dir__() if name not in hidden and not name.startswith("_"))
+        return sorted(name for name in names if not hasattr(BaseModel, name))
+
+
+def _stated(value: Any) -> Any:
+    """What a spec has for a value; a list of one name is the name."""
+    match value:
+        case SpecModel():
+            return value.as_spec()
+        case Mapping():
+            return {key: _stated(part) for key, part in value.items()}
+        case (str() as name,):
+            return str(name)
+        case tuple() | list():
+            return [_stated(part) for part in value]
+        case str():
+            return str(value)
+    return value
 
 
 def _not_huge(value: float) -> float:

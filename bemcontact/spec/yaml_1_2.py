@@ -127,9 +127,16 @@ class _Dumper(yaml.SafeDumper):
         """Tag with which `Loader` reads a node."""
         return _tag(kind, value, implicit, super().resolve)
 
+    def represent_text(self, data: str) -> yaml.ScalarNode:
+        """Write a text of several lines as a block."""
+        return self.represent_scalar(f"{TAG}str", data, style="|" if "\n" in data else None)
+
     def ignore_aliases(self, data: Any) -> bool:
         """Write no aliases."""
         return True
+
+
+_Dumper.add_representer(str, _Dumper.represent_text)
 
 
 def to_yaml(data: Any) -> str:

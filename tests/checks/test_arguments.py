@@ -63,6 +63,12 @@ Call = tuple[Callable[..., Any], Mapping[str, Any]]
 CALLS: dict[str, Call] = {
     "load": (bemcontact.load, {"path": "no such file.yaml", "overrides": (), "variant": None}),
     "loads": (bemcontact.loads, {"text": "a: 1", "name": "text", "overrides": (), "variant": None}),
+    "problem": (bemcontact.problem, {"parts": PROBLEM.to_dict()}),
+    "problem, parts": (
+        lambda **parts: bemcontact.problem({**PROBLEM.to_dict(), **parts}),
+        {"name": "a", "accuracy": 0.1, "material": {}, "boundary": {}},
+    ),
+    "dumps": (bemcontact.dumps, {"problem": PROBLEM}),
     "condense": (bemcontact.condense, {"problem": PROBLEM}),
     "stress_operator": (bemcontact.stress_operator, {"problem": PROBLEM, "points": [[1, 0.5]]}),
     "StressOperator.at": (OPERATOR.at, {"pressure": np.ones(5), "amplitudes": None, "factors": None}),
@@ -273,7 +279,7 @@ def test_each_wrong_kind_of_argument_gets_an_answer_in_words(name: str, monkeypa
 def test_all_public_functions_are_called():
     """Each function of the package by name, and each method of what a user makes that takes an argument."""
     functions = {name for name in bemcontact.__all__ if inspect.isfunction(getattr(bemcontact, name))}
-    assert functions - {"schema"} <= {name.partition(",")[0] for name in CALLS}
+    assert functions - {"schema", "dump"} <= {name.partition(",")[0] for name in CALLS}
     called = {name.partition(",")[0].rpartition(".")[2] for name in CALLS}
     kinds = (CondensedContact, bemcontact.LoadPath, bemcontact.ContactModel, bemcontact.GapDesign)
     for kind in (*kinds, bemcontact.Result, bemcontact.StressOperator):

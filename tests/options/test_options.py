@@ -95,6 +95,7 @@ def test_what_is_asked_of_a_solve_is_what_the_problem_states_then():
     asked = bemcontact.solve(problem, set=changes, case="aside", accuracy=0.1)
     np.testing.assert_array_equal(asked.solution.pressure, bemcontact.solve(stated).solution.pressure)
     coarse = bemcontact.solve(bemcontact.load(MODEL), variant="paper", refine=2)
+    assert coarse.problem is not None
     assert coarse.problem.mesh.refine == 2
     contact = asked.contact
     with pytest.raises(bemcontact.ProblemError, match="refine is 2, but a condensed problem"):
