@@ -11,7 +11,7 @@ PACKAGE = TESTS.parent / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-FOUNDATION = ("errors", "checks", "arrays", "blas_threads", "serialization", "options", "version", "files")
+FOUNDATION = ("errors", "checks", "arrays", "blas_threads", "serialization", "options", "version", "files", "views")
 
 ROOMS = {
     "errors": (),
@@ -21,8 +21,9 @@ ROOMS = {
     "serialization": ("errors", "checks"),
     "options": ("errors", "checks"),
     "version": (),
+    "views": (),
     "files": ("errors",),
-    "problems": ("errors", "checks", "arrays", "options"),
+    "problems": ("errors", "checks", "arrays", "options", "views"),
     "spec": ("errors", "checks", "files", "problems"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problems", "contact"),

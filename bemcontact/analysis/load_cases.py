@@ -23,6 +23,7 @@ from bemcontact.options import FormulationName, SolveOptions, SolvingKeywords, W
 from bemcontact.problems.problem import Problem
 from bemcontact.serialization import Record, Recorded
 from bemcontact.version import __version__
+from bemcontact.views import Tabular
 
 
 class CasesRecord(Record):
@@ -44,7 +45,7 @@ class CasesRecord(Record):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class CaseResults(Recorded):
+class CaseResults(Recorded, Tabular):
     """The results of all load cases and combinations of a problem.
 
     Parameters

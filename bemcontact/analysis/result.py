@@ -9,7 +9,13 @@ from numpy.typing import ArrayLike, NDArray
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy, together
 from bemcontact.assessment.certificate import Certificate
-from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprint_record
+from bemcontact.assessment.footprint import (
+    ContactInterval,
+    Footprint,
+    FootprintRecord,
+    Peak,
+    footprint_record,
+)
 from bemcontact.assessment.penetration import Penetration
 from bemcontact.assessment.residual import Residuals
 from bemcontact.bem.mesh import BoundaryState
@@ -29,8 +35,13 @@ from bemcontact.contact.stress import EdgeStress, LargestStresses, Stress, Trian
 from bemcontact.errors import ProblemError
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problems.problem import Problem
-from bemcontact.serialization import PairTables, Record, Recorded
+from bemcontact.problems.units import Units
+from bemcontact.serialization import Pair, PairTables, Record, Recorded
 from bemcontact.version import __version__
+from bemcontact.views import Tabular
+
+ROUND_OFF = 1e-9
+"""Relative error that is not worth a word."""
 
 
 class BoundaryRecord(Record):
@@ -101,7 +112,7 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Result(Recorded):
+class Result(Recorded, Tabular):
     """A solution of a contact problem and all quantities recomputed from it."""
 
     problem: Problem | None
@@ -139,7 +150,9 @@ class Result(Recorded):
     def __repr__(self) -> str:
         """One line: name, formulation, verdict, peak."""
         if self.footprint.peak is not None:
-            peak = f"peak pressure {self.footprint.peak.pressure:.6g}"
+            largest, bar = self.footprint.peak.pressure, self.accuracy.peak_bar()
+            known = "" if bar is None or bar < ROUND_OFF else f" ± {bar * largest:.2g}"
+            peak = f"peak pressure {largest:.6g}{known} {self.units.stress}".rstrip()
         else:
             peak = "infinite peak pressure" if self.footprint.intervals else "no contact"
         equations = self.certificate.heading
@@ -148,6 +161,41 @@ class Result(Recorded):
             equations = f"{self.penetration.kind}: '{zone}'" if zone else str(self.penetration.kind)
         by = f"{self.contact.name!r} by {self.solution.formulation}"
         return f"<Result of {by}: {equations}, {self.accuracy.in_short}, {peak}>"
+
+    @property
+    def units(self) -> Units:
+        """Labels of the units that all numbers are in."""
+        return Units(**self.contact.units)
+
+    @property
+    def points(self) -> Array:
+        """Undeformed places (n, 2) of the contact points [L]."""
+        return self.contact.points
+
+    @property
+    def pressure(self) -> Array:
+        """Pressure (n,) at the contact points, per undeformed length [p]."""
+        return self.solution.pressure
+
+    @property
+    def gap(self) -> Array:
+        """Gap (n,) at the contact points, zero in contact [L]."""
+        return self.contact.initial_gap + self.solution.displacement
+
+    @property
+    def peak(self) -> Peak | None:
+        """The largest pressure and its place; None without contact, or where it is infinite."""
+        return self.footprint.peak
+
+    @property
+    def intervals(self) -> tuple[ContactInterval, ...]:
+        """Where the body touches: the two ends of each interval."""
+        return self.footprint.intervals
+
+    @property
+    def forces(self) -> dict[str, Pair]:
+        """Force (x, y) of each contact on the body, or on the first of its two bodies, per thickness [p L]."""
+        return self.footprint.forces
 
     @property
     def certified(self) -> bool:
@@ -296,7 +344,7 @@ class Result(Recorded):
         contact, problem, boundary = self.contact, self.problem, self.boundary
         if problem is None or boundary is None:
             raise ProblemError("the result of a condensed problem has no boundary; solve the problem itself")
-        gaps, shape = contact.initial_gap + self.solution.displacement, boundary.points.shape[:2]
+        gaps, shape = self.gap, boundary.points.shape[:2]
         pressure, gap = (np.full((len(contact.zone_names), *shape), value) for value in (0.0, np.nan))
         for number, name in enumerate(contact.zone_names):
             edges = [boundary.edge_names.index(edge) for edge in problem.edges_of(name)]

@@ -5,7 +5,6 @@ The direct solution of the complementarity problem is the reference; it has no o
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
 from itertools import combinations
 
 import numpy as np
@@ -28,6 +27,7 @@ from bemcontact.contact.solution import ContactSolution
 from bemcontact.options import Weights
 from bemcontact.serialization import Leaf, Record, Recorded
 from bemcontact.version import __version__
+from bemcontact.views import Tabular
 
 SAME = 1e-6
 """Difference of two pressures over the peak from which they are two states and not one."""
@@ -90,7 +90,7 @@ class ComparisonRecord(Record):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Comparison(Recorded):
+class Comparison(Recorded, Tabular):
     """Formulations of one condensed problem side by side."""
 
     contact: CondensedContact
@@ -112,21 +112,6 @@ class Comparison(Recorded):
         """One line: name, contenders, verdict."""
         labels = ", ".join(contender.label for contender in self.contenders)
         return f"<Comparison of {self.contact.name!r}: {labels}; {self.verdict}>"
-
-    def _repr_html_(self) -> str:
-        """A table for notebooks: each contender's verdict, objective and distance from the reference."""
-        rows = []
-        for item in self.everyone:
-            difference = self.difference(item.label)
-            objective = "" if item.objective is None else f"{item.objective:.1e}"
-            off = "" if difference is None else f"{difference.largest:.1e}"
-            cells = (item.label, item.verdict.outcome, objective, off)
-            rows.append(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>")
-        head = "".join(
-            f"<th>{name}</th>" for name in ("formulation", "verdict", "objective", "off the direct solution")
-        )
-        caption = f"<caption>{escape(self.contact.name)}: {escape(self.verdict)}</caption>"
-        return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
 
     @property
     def everyone(self) -> tuple[Contender, ...]:

@@ -16,6 +16,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.parametric.path import LoadPath
 from bemcontact.serialization import Internal, Leaf, Pair, Pairs
+from bemcontact.views import Tabular
 
 BETWEEN = (0.25, 0.5, 0.75)
 """Fractions between two breakpoints at which intervals are evaluated, because their ends are not linear."""
@@ -76,7 +77,7 @@ class PathState(Leaf):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class ParameterPath(Leaf):
+class ParameterPath(Leaf, Tabular):
     """A load path between two values of a parameter."""
 
     key: str

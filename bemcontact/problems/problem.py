@@ -492,7 +492,7 @@ def problem(parts: Mapping[str, Any]) -> Problem:
     Parameters
     ----------
     parts : mappings, lists, numbers and texts as YAML has them; also arrays and numbers of NumPy, and objects of
-        `bemcontact.problems` such as ``Material(young_modulus=210e3, poisson_ratio=0.3)``
+        ``bemcontact.problems`` such as ``Material(young_modulus=210e3, poisson_ratio=0.3)``
 
     Returns
     -------

@@ -33,6 +33,7 @@ from bemcontact.problems.pairing import OppositePart, opposite_parts
 from bemcontact.problems.units import Units
 from bemcontact.problems.validation import Name, Point, SpecModel, Text, Title, left_out
 from bemcontact.problems.visibility import edges_that_see, zone_edges
+from bemcontact.views import Drawn
 
 REACH = 0.03
 """Part of the size of the smaller of two whole bodies up to which gaps may close: a larger strain is not small."""
@@ -41,7 +42,7 @@ SAME_CIRCLE = 1e-9
 """Distance of two centers, and difference of two radii, over the radius up to which they are equal."""
 
 
-class StatedBodies(SpecModel):
+class StatedBodies(SpecModel, Drawn):
     """What a problem states of its bodies and of what they may touch."""
 
     name: Title

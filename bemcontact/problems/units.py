@@ -57,7 +57,7 @@ class Units(SpecModel):
 
     @property
     def pascals(self) -> float | None:
-        """The unit of stress in pascals; None if a label is not one of `METERS` and `NEWTONS`."""
+        """The unit of stress in pascals; None if a label is not one of ``METERS`` and ``NEWTONS``."""
         length, force = METERS.get(self.length.strip()), NEWTONS.get(self.force.strip())
         return None if length is None or force is None else force / length**2
 

@@ -129,20 +129,19 @@ def _error(bar: ErrorBar | None) -> float | str:
 def points_csv(results: Result | CaseResults) -> str:
     """Write a line for each contact point of each load case: place, normal, pressure, gap, and whether it touches."""
     return _written(
-        POINT_COLUMNS, (row for case, result in by_case(results).items() for row in _point_lines(case, result))
+        POINT_COLUMNS, (row for case, result in by_case(results).items() for row in point_lines(case, result))
     )
 
 
-def _point_lines(case: str, result: Result) -> Iterator[list[Any]]:
+def point_lines(case: str, result: Result) -> Iterator[list[Any]]:
     """The lines of a result in `points_csv`, zone by zone and along the boundary."""
-    contact, solution = result.contact, result.solution
-    gap = contact.initial_gap + solution.displacement
+    contact = result.contact
     for run in np.unique(contact.run).tolist():
         for i in contact.points_of_run(run).tolist():
             yield [
                 case, contact.zone_names[int(contact.zone[i])],
                 *contact.points[i].tolist(), *contact.normals[i].tolist(), float(contact.arc_position[i]),
-                float(solution.pressure[i]), float(gap[i]), int(result.touching[i]),
+                float(result.pressure[i]), float(result.gap[i]), int(result.touching[i]),
             ]  # fmt: skip
 
 

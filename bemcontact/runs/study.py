@@ -13,7 +13,6 @@ from bemcontact.errors import ProblemError
 from bemcontact.options import AskingKeywords
 from bemcontact.problems.problem import Problem
 from bemcontact.report import folder as folders
-from bemcontact.report.study_page import rows_in_short
 from bemcontact.studies.cluster import ensure_dask, rows_by_dask
 from bemcontact.studies.journal import JOURNAL, Journal, opened, recorded
 from bemcontact.studies.outputs import chosen
@@ -41,10 +40,6 @@ class Study(StudyTable):
     outputs : names of the outputs that are shown
     rows : members in the order of the grid; `table` has them as columns
     """
-
-    def _repr_html_(self) -> str:
-        """The line of `repr` and the first rows, for a notebook."""
-        return rows_in_short(self)
 
     def save(self, folder: str | Path, spec: str | None = None) -> None:
         """Write the study into a folder: page, tables, pictures.

@@ -20,6 +20,7 @@ from bemcontact.studies.axes import Axis
 from bemcontact.studies.outputs import columns_of
 from bemcontact.studies.rows import MemberRow, MemberStatus
 from bemcontact.version import __version__
+from bemcontact.views import Tabular
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +58,7 @@ class StudyRecord(Record):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class StudyTable(Recorded):
+class StudyTable(Recorded, Tabular):
     """The rows of a study.
 
     Parameters

@@ -374,7 +374,7 @@ def test_results_are_reported_in_a_line(cylinder):
     result = bemcontact.solve(cylinder)
     peak = f"{result.footprint.peak.pressure:.6g}"
     verdicts = "unique solution proved, error not estimated"
-    told = f"<Result of 'cylinder on a plane, stated mesh' by complementarity: {verdicts}, peak pressure {peak}>"
+    told = f"<Result of 'cylinder on a plane, stated mesh' by complementarity: {verdicts}, peak pressure {peak} kN/cm²>"
     assert repr(result) == told
     condensed = "<CondensedContact 'cylinder on a plane, stated mesh': 45 points in foot; 1 free motions>"
     assert repr(result.contact) == condensed

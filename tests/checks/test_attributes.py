@@ -79,7 +79,6 @@ def test_a_result_has_all_of_them():
 @pytest.mark.parametrize(
     ("name", "wrong", "place"),
     [
-        ("result", "peak", "footprint.peak.pressure"),
         ("result", "max_pressure", "footprint.peak.pressure"),
         ("result", "resultant", "footprint.resultant.force"),
         ("result", "force", "footprint.resultant.force"),
@@ -113,7 +112,7 @@ def test_objects_behave_as_before(name: str):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert getattr(owner, "nothing_of_the_kind", 7) == 7
-        assert not hasattr(owner, "_repr_html_")
+        assert not hasattr(owner, "_repr_mimebundle_")
         assert not hasattr(owner, "__array__")
         assert np.asarray(owner, object).shape == ()
         copied = copy.copy(owner)

@@ -17,6 +17,7 @@ from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
 from bemcontact.problems.surface_lines import Polyline, Spline
 from bemcontact.serialization import Internal, Leaf, Pairs, Vector
+from bemcontact.views import Tabular
 
 AGREED = 1e-6
 """Difference of the designed pressure from that of the contact state, over the peak, up to which they agree."""
@@ -80,7 +81,7 @@ class LoadState(WithHints):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class GapDesign(Leaf):
+class GapDesign(Leaf, Tabular):
     """A designed profile, with the contact states of all load states without and with it."""
 
     goal: Goal

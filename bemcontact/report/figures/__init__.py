@@ -14,7 +14,7 @@ from bemcontact.report.figures.design import (
 )
 from bemcontact.report.figures.load_cases import draw_case_pressures, figure_of_cases
 from bemcontact.report.figures.mesh_study import draw_convergence, draw_history, figures_of
-from bemcontact.report.figures.page import FORMATS, ensure_known_format, save
+from bemcontact.report.figures.page import FORMATS, ensure_known_format, new_page, save
 from bemcontact.report.figures.path import (
     draw_interval_ends,
     draw_moments,
@@ -72,6 +72,7 @@ __all__ = [
     "figures_of_reproduction",
     "figures_of_study",
     "fill_with_stress",
+    "new_page",
     "pictures_of",
     "save",
     "vector_graphic",

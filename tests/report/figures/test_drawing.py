@@ -1,0 +1,87 @@
+"""Objects draw themselves into axes of matplotlib by the names of their pictures."""
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+from matplotlib import pyplot
+from matplotlib.figure import Figure
+
+import bemcontact
+
+GALLERY = Path(__file__).parents[3] / "models" / "gallery"
+LOAD, MODULUS = "conditions.top.pressure", "material.young_modulus"
+
+
+@cache
+def items():
+    roller = bemcontact.load(GALLERY / "hertz_small.yaml")
+    result = bemcontact.solve(roller, accuracy=0.1)
+    return {
+        "problem": roller,
+        "result": result,
+        "condensed": bemcontact.solve(result.contact),
+        "cases": bemcontact.solve_cases(bemcontact.load(GALLERY / "roller_in_v_block.yaml"), accuracy=0.1),
+        "comparison": bemcontact.compare(result.contact, ["qp3"]),
+        "path": bemcontact.follow(roller, LOAD, to=100.0, start=50.0, accuracy=0.1),
+        "study": bemcontact.study(roller, {LOAD: [10.0, 40.0], MODULUS: [1e5, 2e5, 4e5]}, accuracy=0.1),
+    }
+
+
+def label(axes):
+    return axes.get_xlabel(), axes.get_ylabel().partition("\n")[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "labels"),
+    [
+        ("problem", {}, ("x [mm]", "y [mm]")),
+        ("result", {}, ("x [mm]", "y [mm]")),
+        ("result", {"what": "pressure"}, (None, "pressure [N/mm²]")),
+        ("result", {"what": "gap", "zone": "foot"}, (None, "gap [mm]")),
+        ("result", {"what": "contact", "zone": "foot", "stress": "max_shear"}, ("x [mm]", "y [mm]")),
+        ("result", {"what": "deformed"}, ("x [mm]", "y [mm]")),
+        ("result", {"what": "stress", "stress": "xx"}, ("x [mm]", "y [mm]")),
+        ("condensed", {}, (None, "pressure [N/mm²]")),
+        ("cases", {"zone": "plate"}, (None, "pressure [N/mm²]")),
+        ("comparison", {"zone": "foot"}, ("distance along foot [mm]", "pressure [N/mm²]")),
+        ("path", {}, (LOAD, "peak pressure [N/mm²]")),
+        ("path", {"what": "force"}, (LOAD, None)),
+        ("path", {"what": "moment"}, (LOAD, "moment about (0, 0) [N·mm/mm]")),
+        ("path", {"what": "ends"}, (LOAD, None)),
+        ("study", {"output": "peak", "over": LOAD}, (LOAD, None)),
+        ("study", {}, (MODULUS, None)),
+    ],
+)
+def test_an_object_draws_into_the_axes_that_it_is_given(name, options, labels):
+    axes = Figure(layout="constrained").add_subplot()
+    assert items()[name].plot(axes, **options) is axes
+    assert axes.lines or axes.patches or axes.collections
+    for found, wanted in zip(label(axes), labels, strict=True):
+        assert wanted in (None, found)
+
+
+def test_axes_are_made_where_none_are_given():
+    pyplot.switch_backend("agg")
+    axes = items()["result"].plot()
+    assert axes.figure.number in pyplot.get_fignums()
+    pyplot.close(axes.figure)
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "words"),
+    [
+        ("result", {"what": "stresses"}, "no picture 'stresses' of this; take one of contact, pressure, gap"),
+        ("result", {"zone": "hand"}, "no contact zone 'hand'; take one of foot"),
+        ("result", {"colour": 1}, "'contact' has no option 'colour'; it takes zone, stress"),
+        ("result", {"what": "deformed", "zone": "foot"}, "it takes no option"),
+        ("result", {"stress": "shear"}, "no stress 'shear'; take one of"),
+        ("result", {"axes": "here"}, "axes must be axes of matplotlib"),
+        ("condensed", {"what": "contact"}, "has no boundary to draw"),
+        ("study", {"output": "price"}, "no output 'price'; take one of peak"),
+        ("study", {"over": "price"}, "no parameter 'price'; take one of"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_in_words(name, options, words):
+    with pytest.raises(bemcontact.ProblemError, match=words):
+        items()[name].plot(**options)

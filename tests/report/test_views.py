@@ -1,0 +1,125 @@
+"""What objects show of themselves: notebooks, data frames, arrays; each value is that of the object."""
+
+import sys
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bemcontact
+from bemcontact.report import views
+
+GALLERY = Path(__file__).parents[2] / "models" / "gallery"
+LOAD, MODULUS = "conditions.top.pressure", "material.young_modulus"
+
+
+@cache
+def items():
+    roller = bemcontact.load(GALLERY / "hertz_small.yaml")
+    result = bemcontact.solve(roller, accuracy=0.05)
+    return {
+        "problem": roller,
+        "result": result,
+        "cases": bemcontact.solve_cases(bemcontact.load(GALLERY / "roller_in_v_block.yaml"), accuracy=0.1),
+        "comparison": bemcontact.compare(result.contact, ["qp3"]),
+        "path": bemcontact.follow(roller, LOAD, to=100.0, start=50.0, accuracy=0.1),
+        "study": bemcontact.study(roller, {LOAD: [10.0, 40.0], MODULUS: [1e5, 2e5, 4e5]}, accuracy=0.1),
+    }
+
+
+@pytest.mark.parametrize("name", ["problem", "result", "cases", "comparison", "path", "study"])
+def test_a_notebook_shows_a_picture_and_a_table_without_markup_of_the_user(name):
+    page = items()[name]._repr_html_()
+    assert "src='data:image/svg+xml;base64," in page
+    assert "<table" in page
+    shown = bemcontact.load(GALLERY / "hertz_small.yaml", {"name": "<b>bold</b>"})._repr_html_()
+    assert "<b>" not in shown
+    assert "&lt;b&gt;bold" in shown
+
+
+def test_the_frame_of_a_result_has_each_contact_point():
+    result = items()["result"]
+    frame = result.to_frame()
+    assert [*frame.columns[:3]] == ["zone", "x", "y"]
+    order = np.lexsort([frame.y, frame.x])
+    mine = np.lexsort(result.points.T[::-1])
+    np.testing.assert_array_equal(frame.pressure.to_numpy()[order], result.pressure[mine])
+    np.testing.assert_array_equal(frame.gap.to_numpy()[order], result.gap[mine])
+    assert frame.touching.sum() == result.touching.sum()
+    assert frame.attrs["units"]["pressure"] == "N/mm²"
+
+
+def test_the_frame_of_load_cases_has_each_case():
+    cases = items()["cases"]
+    frame = cases.to_frame()
+    for name, result in cases.results.items():
+        own = frame[frame.case == name]
+        assert len(own) == result.contact.size
+        assert own.pressure.max() == result.pressure.max()
+
+
+def test_the_frame_of_a_path_has_each_breakpoint():
+    path = items()["path"]
+    frame = path.to_frame()
+    peaks = frame.groupby(path.key).pressure.max()
+    assert [*peaks.index] == [path.value(t) for t in path.path.parameter.tolist()]
+    np.testing.assert_array_equal(peaks, path.path.pressure.max(axis=1))
+
+
+def test_the_frames_of_a_study_and_a_comparison_have_their_rows():
+    study, comparison = items()["study"], items()["comparison"]
+    assert {name: [*column] for name, column in study.to_frame()[["member", "status"]].items()} == {
+        name: study.table()[name] for name in ("member", "status")
+    }
+    assert [*comparison.to_frame().formulation] == ["QP3", "direct"]
+
+
+def test_arrays_have_named_dimensions():
+    result, cases, path, study = (items()[name] for name in ("result", "cases", "path", "study"))
+    arrays = result.to_xarray()
+    np.testing.assert_array_equal(arrays.pressure, result.pressure)
+    assert arrays.pressure.attrs["units"] == "N/mm²"
+    by_case = cases.to_xarray()
+    for name in cases.results:
+        np.testing.assert_array_equal(by_case.pressure.sel(case=name), cases.results[name].pressure)
+    assert by_case.attrs["name"] == cases.name
+    np.testing.assert_array_equal(path.to_xarray().pressure, path.path.pressure)
+    grid = study.to_xarray()
+    assert grid.peak.dims == (LOAD, MODULUS)
+    for row in study.rows:
+        there = grid.sel({key: row.values[key] for key in (LOAD, MODULUS)})
+        assert float(there.peak) == row.reading("peak").value
+        assert str(there.status.item()) == row.status
+
+
+def test_what_has_no_arrays_or_packages_says_so(monkeypatch):
+    with pytest.raises(bemcontact.ProblemError, match="to_frame has its table"):
+        items()["comparison"].to_xarray()
+    monkeypatch.setattr(views, "find_spec", lambda name: None)
+    with pytest.raises(ModuleNotFoundError, match=r"pandas is not installed.*bemcontact\[tables\]"):
+        items()["result"].to_frame()
+    with pytest.raises(ModuleNotFoundError, match="xarray is not installed"):
+        items()["result"].to_xarray()
+
+
+def test_results_lead_to_their_parts_and_have_units_in_their_line():
+    result = items()["result"]
+    assert result.peak is result.footprint.peak
+    assert result.intervals is result.footprint.intervals
+    assert result.forces is result.footprint.forces
+    assert abs(result.gap[result.touching]).max() <= 1e-12 * result.contact.scales.displacement  # zero up to round-off
+    assert result.peak.pressure == result.pressure.max()
+    assert repr(result).endswith("N/mm²>")
+    assert " ± " in repr(result)
+    assert result.units.stress == "N/mm²"
+
+
+def test_nothing_is_imported_until_something_is_shown():
+    import subprocess  # a fresh process: this one has drawn
+
+    code = (
+        "import sys, bemcontact; p = bemcontact.load(sys.argv[1]); r = bemcontact.solve(p, accuracy=0.1); "
+        "assert not {'matplotlib', 'pandas', 'xarray'} & {*sys.modules}"
+    )
+    subprocess.run([sys.executable, "-c", code, str(GALLERY / "hertz_small.yaml")], check=True)
