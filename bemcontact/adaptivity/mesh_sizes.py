@@ -67,6 +67,7 @@ class MeshSizes:
             for edge in loop.edges:
                 start, length = loop.start_of[edge.name], edge.length
                 ends += [start + place * length for place in edge.ends_at]
+                ends += [start + stop for stop in problem.load_stops(edge)]
                 if edge.elements is not None:
                     at = start + length * edge.breakpoints(problem.mesh.refine)
                     own += [Limit(low=low, high=high, size=high - low) for low, high in pairwise(at.tolist())]

@@ -90,7 +90,7 @@ def true_resultant(edges: Iterable[Edge], loads: Loads, center: Array) -> tuple[
         return np.zeros(2), 0.0
     area, moments = 0.0, np.zeros(2)
     for edge in edges:
-        points, normals, lengths = along_curve(edge)
+        points, normals, lengths, _ = along_curve(edge)
         arms = points - center
         flux = lengths * np.sum(arms * normals, axis=1)
         area += float(flux.sum()) / 2
@@ -287,8 +287,8 @@ def _resultant(part: Part, loads: Loads, conditions: Mapping[str, Condition], ce
     force, moment = true_resultant(part.edges, loads, center)
     for edge in part.edges:
         if edge.name in conditions and conditions[edge.name].presses:
-            points, normals, lengths = along_curve(edge)
-            forces = lengths[:, None] * applied_traction(conditions[edge.name], points, normals)
+            points, normals, lengths, along = along_curve(edge)
+            forces = lengths[:, None] * applied_traction(conditions[edge.name], points, normals, along)
             x, y = (points - center).T
             force = force + forces.sum(axis=0)
             moment += float(x @ forces[:, 1] - y @ forces[:, 0])
@@ -320,6 +320,7 @@ def _case_loading(problem: Problem, mesh: Mesh, name: str, case: LoadCase, loads
                 displacement=displacement,
                 traction=added.traction if added else AxisFields(),
                 pressure=added.pressure if added else None,
+                force=added.force if added else (),
             )
     try:
         return _loading(problem, mesh, conditions, loads)

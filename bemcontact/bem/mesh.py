@@ -13,7 +13,7 @@ from bemcontact.bem import reference_element
 from bemcontact.bem.division import Division, divided
 from bemcontact.checks.attributes import PLACE, WithHints, Words
 from bemcontact.errors import Issue, ProblemError
-from bemcontact.problems.conditions import AxisFields, Condition, Field
+from bemcontact.problems.conditions import Along, AxisFields, Condition, Field
 from bemcontact.problems.curves import Edge
 from bemcontact.problems.problem import Problem
 
@@ -23,6 +23,8 @@ CURVE_ORDER = 16
 """Gauss points for each element's piece of the curve itself."""
 CONTRADICTION = 1e-9
 """Difference of two prescribed displacements at one corner, relative to the largest one, from which they contradict."""
+STOP = 1e-9
+"""Distance over the length of an edge up to which an element ends at a jump of a load: round-off."""
 CORNER = 0.2
 """Angle [rad], or its sine, by which the boundary turns from which it has a corner."""
 
@@ -41,6 +43,7 @@ class Mesh:
     edge : (m,) index into `edge_names`
     edge_names : names of the edges
     fractions : (m, 3) of the length of its edge at the nodes of each element; none of a mesh without a problem
+    edge_lengths : length of each edge [L]; likewise
     part : (m,) number of the elastic body of each element, ascending; none for an only body
     facing : (m,) by contact of two elastic bodies, element of the second body opposite to each of the first, else -1
     """
@@ -50,6 +53,7 @@ class Mesh:
     edge: IntArray
     edge_names: tuple[str, ...]
     fractions: Array = dataclasses.field(default_factory=lambda: np.zeros((0, 3)))
+    edge_lengths: tuple[float, ...] = ()
     part: IntArray = dataclasses.field(default_factory=lambda: np.zeros(0, int))
     facing: Mapping[str, IntArray] = dataclasses.field(default_factory=dict)
 
@@ -84,6 +88,7 @@ class Mesh:
             edge=np.searchsorted(own, self.edge[elements]),
             edge_names=tuple(self.edge_names[i] for i in own),
             fractions=self.fractions[elements],
+            edge_lengths=tuple(self.edge_lengths[i] for i in own) if self.edge_lengths else (),
         )
         return MeshPart(mesh, elements, nodes)
 
@@ -197,9 +202,11 @@ def build(problem: Problem) -> Mesh:
                 part_of += [number] * len(fractions)
             after += [*range(first + 1, len(edge_of)), first]
     mesh = connected(np.vstack(starts), np.vstack(middles), np.array(after), edge_of)
+    lengths = {edge.name: edge.length for part in problem.parts for edge in part.edges}
     return replace(
         mesh,
         fractions=np.concatenate([division.fractions[name] for name in mesh.edge_names]),
+        edge_lengths=tuple(lengths[name] for name in mesh.edge_names),
         part=np.array(part_of),
         facing={contact: _facing(division, contact, mesh) for contact in division.facing},
     )
@@ -219,8 +226,10 @@ def element_curves(values: Array, count: int) -> Array:
     return reference_element.values(np.linspace(-1, 1, count)) @ values
 
 
-def along_curve(edge: Edge) -> tuple[Array, Array, Array]:
+def along_curve(edge: Edge) -> tuple[Array, Array, Array, Along]:
     """Gauss points (q, 2) [L], outward normals (q, 2) and arc lengths (q,) [L] of an edge itself, not of its elements.
+
+    Their places along the edge come last.
 
     The points are many enough for integrals to round-off.
     """
@@ -228,7 +237,8 @@ def along_curve(edge: Edge) -> tuple[Array, Array, Array]:
     xi, weights = reference_element.gauss_legendre(CURVE_ORDER)
     fractions = ((ends[:-1, None] + ends[1:, None]) / 2 + np.diff(ends)[:, None] / 2 * xi).ravel()
     lengths = (np.diff(ends)[:, None] / 2 * weights).ravel() * edge.length
-    return edge.points(fractions), edge.normals(fractions), lengths
+    along = Along(fractions * edge.length, fractions * edge.length, edge.length)
+    return edge.points(fractions), edge.normals(fractions), lengths, along
 
 
 def connected(starts: Array, middles: Array, after: IntArray, edge_of: Sequence[str]) -> Mesh:
@@ -317,21 +327,50 @@ def boundary_values(conditions: Mapping[str, Condition], mesh: Mesh) -> Boundary
             values.traction_unknown[elements, axis] = True
             owner[nodes, axis] = index
         if condition.presses:
+            along = None
+            if condition.varies_along:
+                along = _along(mesh, index, elements)
+                issues += _unmet_stops(condition, name, mesh, along)
             values.traction[elements] = applied_traction(
-                condition, mesh.nodes[mesh.elements[elements]], mesh.normals[elements]
+                condition, mesh.nodes[mesh.elements[elements]], mesh.normals[elements], along
             )
     if issues:
         raise ProblemError(issues)
     return values
 
 
-def applied_traction(condition: Condition, points: Array, normals: Array) -> Array:
-    """Traction (…, 2) [p] that a condition prescribes at points (…, 2) [L] with outward normals, else zero."""
+def _along(mesh: Mesh, edge: int, elements: IntArray) -> Along:
+    """Places (e, 3) along an edge of the nodes of its elements, each within its element."""
+    length = mesh.edge_lengths[edge]
+    distance = mesh.fractions[elements] * length
+    return Along(distance, np.repeat(distance[:, 1:2], 3, axis=1), length)
+
+
+def _unmet_stops(condition: Condition, name: str, mesh: Mesh, along: Along) -> Iterator[Issue]:
+    """Issues of loads that jump or kink inside an element."""
+    length, ends = along.length, mesh.ends_on(name) * along.length
+    for stop in condition.stops(length):
+        if abs(ends - stop).min() > STOP * length:
+            message = (
+                f"the load jumps or kinks at the distance {stop:.6g} from the start of '{name}', inside an element; "
+                f"add {stop / length:.9g} to ends_at of this edge, or leave elements out"
+            )
+            yield Issue(path=("conditions", name), message=message)
+
+
+def applied_traction(condition: Condition, points: Array, normals: Array, along: Along | None = None) -> Array:
+    """Traction (…, 2) [p] that a condition prescribes at points (…, 2) [L] with outward normals, else zero.
+
+    `along` are their places on the edge, which a condition that varies along it needs.
+    """
     traction = np.zeros_like(points)
     for axis, field in _given(condition.traction):
-        traction[..., axis] = _at(field, points)
+        traction[..., axis] = _at(field, points, along)
     if condition.pressure is not None:
-        traction = -_at(condition.pressure, points)[..., None] * normals
+        traction = -_at(condition.pressure, points, along)[..., None] * normals
+    for force in condition.force:
+        assert along is not None, "a force has a place on its edge"
+        traction = traction + force.traction(along)
     return traction
 
 
@@ -342,8 +381,10 @@ def _given(fields: AxisFields) -> Iterator[tuple[int, Field]]:
             yield axis, field
 
 
-def _at(field: Field, points: Array) -> Array:
-    return field.at(points.reshape(-1, 2)).reshape(points.shape[:-1])
+def _at(field: Field, points: Array, along: Along | None) -> Array:
+    if along is not None:
+        along = Along(along.distance.ravel(), along.within.ravel(), along.length)
+    return field.at(points.reshape(-1, 2), along).reshape(points.shape[:-1])
 
 
 def _largest_displacement(conditions: Mapping[str, Condition], mesh: Mesh) -> float:

@@ -13,7 +13,7 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli import check, compare, path, reproduce, solve, study
-from bemcontact.cli.command import flattened, help_of, refuse, reported
+from bemcontact.cli.command import MeaningCommand, flattened, help_of, refuse, reported
 from bemcontact.cli.terminal import standard_output
 from bemcontact.errors import LINE_BREAKS, escaped, hidden_character
 
@@ -91,4 +91,6 @@ for function in (
     check.condense,
     check.schema,
 ):
-    app.command(help=help_of(function), context_settings={"allow_extra_args": True})(flattened(function))
+    app.command(cls=MeaningCommand, help=help_of(function), context_settings={"allow_extra_args": True})(
+        flattened(function)
+    )

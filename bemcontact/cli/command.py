@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Annotated, Any, NoReturn, get_type_hints
 
 import typer
+from typer.core import TyperCommand
 
 from bemcontact.checks.docstrings import docstring
 from bemcontact.checks.memory import ensure_memory
@@ -29,6 +30,41 @@ from bemcontact.options import SolveOptions
 
 UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 """Exit statuses other than 0."""
+
+
+MEANT = {
+    "--figure": ("plot", "picture", "image", "png", "svg", "pdf", "draw", "graph", "chart", "save-figure", "fig"),
+    "--out": ("output", "folder", "directory", "dir", "report", "html", "page", "o", "csv", "table", "save", "write"),
+    "--accuracy": ("tolerance", "tol", "error", "precision", "eps", "rtol", "epsilon"),
+    "--refine": ("mesh", "refinement", "elements", "density", "h", "fine", "n"),
+    "--formulation": ("method", "formulations", "algorithm", "qp", "model", "type"),
+    "--case": ("load-case", "loadcase", "load", "cases", "combination"),
+    "--variant": ("version-of", "config", "configuration"),
+    "--set": ("override", "param", "parameter", "change", "define", "d", "value", "key"),
+    "--json": ("data", "result", "results", "export"),
+    "--vtk": ("paraview", "vtu"),
+    "--max-iterations": ("iterations", "maxiter", "max-iter", "limit"),
+    "--stress": ("von-mises", "contour", "shear"),
+    "--vary": ("grid", "sweep", "range", "over"),
+    "--workers": ("jobs", "j", "processes", "threads", "cores", "parallel", "cpus"),
+}
+"""Option -> what others call it."""
+
+
+class MeaningCommand(TyperCommand):
+    """A command that names the option which is meant by another word for it."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse arguments; of an unknown option, name that with the nearest meaning."""
+        own = {name for parameter in self.params for name in parameter.opts}
+        try:
+            return super().parse_args(ctx, args)
+        except Exception as error:  # the class of the parser's error is not public
+            word = str(getattr(error, "option_name", "")).strip("-").lower().replace("_", "-")
+            meant = [option for option, words in MEANT.items() if word in words and option in own]
+            if meant and hasattr(error, "possibilities"):
+                vars(error)["possibilities"] = meant
+            raise
 
 
 def flattened(command: Callable[..., None]) -> Callable[..., None]:

@@ -1,20 +1,38 @@
 """Conditions on the edges of the body (displacement, traction, pressure) and loads on its volume."""
 
-from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Self
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
-from pydantic import AfterValidator, GetJsonSchemaHandler, model_validator
+from pydantic import AfterValidator, BeforeValidator, GetJsonSchemaHandler, model_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
 from bemcontact.arrays import Array
-from bemcontact.problems.validation import Number, Point, Positive, SpecModel, invalid, not_tiny
+from bemcontact.problems.validation import Flag, Number, Point, Positive, SpecModel, invalid, not_tiny
 from bemcontact.problems.wording import described, number_hint
 
 
+def _ascending(table: tuple[Point, ...]) -> tuple[Point, ...]:
+    """Refuse a table whose distances do not ascend, and more than two values at one distance."""
+    distances = [distance for distance, _ in table]
+    if distances and (len(distances) < 2 or distances[0] < 0):
+        raise invalid("a table has two or more pairs [distance from the start of the edge, value], as [[0, 5], [3, 0]]")
+    for before, after in pairwise(distances):
+        if after < before:
+            raise invalid(f"distances from the start of the edge must ascend; {after:g} stands after {before:g}")
+    for distance in {*distances}:
+        if distances.count(distance) > 2:
+            raise invalid(f"there are more than two values at the distance {distance:g}; two make a jump")
+    return table
+
+
 class Field(SpecModel):
-    """A constant number, or a polynomial in the coordinates: constant + x X + y Y + xx X² + xy X Y + yy Y²."""
+    """A constant number, or a polynomial in the coordinates: constant + x X + y Y + xx X² + xy X Y + yy Y².
+
+    The load on an edge may have a table of values along it too, which is added.
+    """
 
     example: ClassVar[str] = "{constant: 3, x: 0.5}"
 
@@ -30,6 +48,9 @@ class Field(SpecModel):
     """The factor of X Y."""
     yy: Number = 0.0
     """The factor of Y²."""
+    along: Annotated[tuple[Point, ...], AfterValidator(_ascending)] = ()
+    """Of a load: pairs [distance from the start of the edge, value], between which the value is linear, and beyond
+    which it is 0. Two pairs at one distance make a jump."""
 
     @model_validator(mode="before")
     @classmethod
@@ -54,10 +75,79 @@ class Field(SpecModel):
         """Return the number that a constant field is, else a mapping."""
         return self.to_dict() if {*self.to_dict()} - {"constant"} else self.constant
 
-    def at(self, points: Array) -> Array:
-        """Values (k,) at points (k, 2) [L]."""
+    def at(self, points: Array, along: "Along | None" = None) -> Array:
+        """Values (k,) at points (k, 2) [L]; of a table at their places along the edge."""
         x, y = np.asarray(points, float).T
-        return self.constant + self.x * x + self.y * y + self.xx * x * x + self.xy * x * y + self.yy * y * y
+        value = self.constant + self.x * x + self.y * y + self.xx * x * x + self.xy * x * y + self.yy * y * y
+        return value if not self.along else value + _in_table(self.along, along)
+
+
+class Along(NamedTuple):
+    """Places along an edge.
+
+    Parameters
+    ----------
+    distance : (k,) from its start [L]
+    within : (k,) distance of another place in the same piece of it, which tells on which side of a jump a place is [L]
+    length : of the edge [L]
+    """
+
+    distance: Array
+    within: Array
+    length: float
+
+
+def _in_table(table: Sequence[Point], along: Along | None) -> Array:
+    """Values (k,) of a table that is linear between its pairs, and zero beyond them."""
+    assert along is not None, "only loads on edges have tables"
+    at, value = np.array(table).T
+    piece = np.searchsorted(at, along.within, side="right") - 1
+    inside = (piece >= 0) & (piece < len(at) - 1)
+    piece = np.clip(piece, 0, len(at) - 2)
+    length = np.diff(at)[piece]
+    slope = np.diff(value)[piece] / np.where(length > 0, length, 1.0)
+    return np.where(inside, value[piece] + slope * (along.distance - at[piece]), 0.0)
+
+
+class EdgeForce(SpecModel):
+    """A force on an edge, spread evenly over a part of it or all of it."""
+
+    example: ClassVar[str] = "{y: -400, width: 2, at: 10}"
+
+    x: Number = 0.0
+    """The component along x, per thickness."""
+    y: Number = 0.0
+    """The component along y, per thickness."""
+    width: Positive | None = None
+    """The length of edge over which it is spread; all of the edge if left out."""
+    at: Number | None = None
+    """The distance of the middle of this part from the start of the edge; the middle of the edge if left out."""
+
+    @model_validator(mode="after")
+    def _placed(self) -> Self:
+        """Refuse a place of what is spread over the whole edge, and no force."""
+        if self.at is not None and self.width is None:
+            raise invalid("a force at a place needs a width, for no body can bear it at a point; give its width")
+        if not self.x and not self.y:
+            raise invalid("the force is zero; give x or y, or leave it out")
+        return self
+
+    def part(self, length: float) -> tuple[float, float]:
+        """Distances from the start of an edge of this length [L] between which it acts."""
+        width = length if self.width is None else self.width
+        middle = length / 2 if self.at is None else self.at
+        return middle - width / 2, middle + width / 2
+
+    def traction(self, along: Along) -> Array:
+        """Traction (k, 2) [p] at places along the edge."""
+        first, last = self.part(along.length)
+        inside = (along.within >= first) & (along.within <= last)
+        return np.where(inside[..., None], np.array([self.x, self.y]) / (last - first), 0.0)
+
+
+def _forces(value: Any) -> Any:
+    """Read one force as a list of it."""
+    return [value] if isinstance(value, Mapping | EdgeForce) else value
 
 
 class AxisFields(SpecModel):
@@ -80,11 +170,20 @@ class Condition(SpecModel):
     """The condition on an edge. Along an axis without a condition, the edge is free of traction."""
 
     example: ClassVar[str] = "{displacement: {x: 0}}"
-    other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("force", "forces", "load", "loads"),
-        "an edge takes traction: {x: …, y: …}, which is force per area; divide the force per thickness by the length "
-        "of the edge",
-    )
+    other_words: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("forces", "load", "loads", "point_load", "line_load"),
+            "a force per thickness on the edge is force: {x: …, y: …, width: …, at: …}, a force per area traction",
+        ),
+        **dict.fromkeys(
+            ("roller", "slider", "guided", "guide"),
+            "an edge that slides along x has displacement: {y: 0}, one that slides along y displacement: {x: 0}; a "
+            "roller that presses is a contact zone with surface: {kind: circle, …}",
+        ),
+        **dict.fromkeys(("clamped", "clamp", "encastre", "support", "hold", "held"), "write fixed: true"),
+        **dict.fromkeys(("hinge", "pin", "pinned"), "hold a short edge by fixed: true; no point can bear a force"),
+        "free": "an edge without a condition is free; leave it out",
+    }
 
     displacement: AxisFields = AxisFields()
     """The prescribed displacement. A symmetry line has displacement 0 along its normal."""
@@ -92,25 +191,76 @@ class Condition(SpecModel):
     """The prescribed force per area along x and y."""
     pressure: Field | None = None
     """The prescribed pressure on the edge, positive in compression."""
+    force: Annotated[tuple[EdgeForce, ...], BeforeValidator(_forces)] = ()
+    """The force per thickness on the edge or on a part of it: one, or a list of them, which are added."""
+    fixed: Flag | None = None
+    """Short for displacement: {x: 0, y: 0}."""
+    symmetry: Literal["x", "y"] | None = None
+    """The axis along which the bodies continue as their mirror image: short for displacement 0 along it."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _written_out(cls, data: Any) -> Any:
+        """Write fixed and symmetry as the displacements that they stand for."""
+        if not isinstance(data, Mapping):
+            return data
+        if data.get("fixed") is False:
+            raise invalid("fixed: false says nothing; leave it out")
+        held = {"x": 0.0, "y": 0.0} if data.get("fixed") is True else {}
+        if data.get("symmetry") in ("x", "y"):
+            held[str(data["symmetry"])] = 0.0
+        given = data.get("displacement", {})
+        if not held or not isinstance(given, Mapping | AxisFields):
+            return data
+        own = {axis: getattr(given, axis) for axis in given.given} if isinstance(given, AxisFields) else given
+        for axis in held:
+            if own.get(axis) is not None:
+                word = "fixed" if data.get("fixed") else "symmetry"
+                raise invalid(f"{word} is displacement 0 along {axis}, and displacement.{axis} is given too; leave one")
+        others = {key: value for key, value in data.items() if key not in ("fixed", "symmetry")}
+        return {**others, "displacement": {**own, **held}}
 
     @model_validator(mode="after")
     def _one_value_per_axis(self) -> Self:
         """Refuse contradictions, and a condition without a value."""
         displacement, traction = self.displacement.given, self.traction.given
+        for axis in displacement:
+            if any(getattr(force, axis) for force in self.force):
+                raise invalid(f"both displacement and force are given along {axis}; give only one of them")
+        if any(field.along for field in (self.displacement.x, self.displacement.y) if field is not None):
+            raise invalid("along is for loads; a displacement is a number or a polynomial in the coordinates")
         if self.pressure is not None and (displacement or traction):
             other = "displacement" if displacement else "traction"
             raise invalid(f"pressure acts along both axes, so {other} cannot be given too; give only one of them")
         for axis in displacement:
             if axis in traction:
                 raise invalid(f"both displacement and traction are given along {axis}; give only one of them")
-        if self.pressure is None and not displacement and not traction:
-            raise invalid("the condition is empty; give displacement, traction or pressure, or leave the edge out")
+        if self.pressure is None and not displacement and not traction and not self.force:
+            raise invalid(
+                "the condition is empty; give displacement, traction, pressure or force, or leave the edge out"
+            )
         return self
 
     @property
     def presses(self) -> bool:
-        """Whether it prescribes pressure or traction."""
-        return self.pressure is not None or bool(self.traction.given)
+        """Whether it prescribes pressure, traction or force."""
+        return self.pressure is not None or bool(self.traction.given) or bool(self.force)
+
+    @property
+    def varies_along(self) -> bool:
+        """Whether it depends on the distance from the start of the edge, or on its length."""
+        return bool(self.force) or any(field.along for field in self._loads)
+
+    @property
+    def _loads(self) -> list[Field]:
+        """Fields of pressure and traction."""
+        return [field for field in (self.pressure, self.traction.x, self.traction.y) if field is not None]
+
+    def stops(self, length: float) -> list[float]:
+        """Distances [L] from the start of an edge of this length at which loads jump or kink."""
+        tables = (distance for field in self._loads for distance, _ in field.along)
+        parts = (distance for force in self.force for distance in force.part(length))
+        return sorted({*tables, *parts})
 
 
 def _not_tiny(vector: Point) -> Point:
@@ -160,6 +310,8 @@ class Temperature(SpecModel):
     def _linear(self) -> Self:
         """Refuse a change for which the thermal displacement has no simple closed form."""
         change = self.change
+        if change.along:
+            raise invalid("along is for loads on edges; a change of temperature may have constant, x and y only")
         if excess := [term for term in ("xx", "xy", "yy") if getattr(change, term) != 0]:
             raise invalid(f"a change of temperature may have constant, x and y only; leave out {', '.join(excess)}")
         return self

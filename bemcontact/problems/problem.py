@@ -58,6 +58,8 @@ from bemcontact.problems.validation import (
 from bemcontact.problems.variant import Variant, issues_of_values
 from bemcontact.problems.wording import unknown_word
 
+ON_EDGE = 1e-9
+"""Distance beyond the end of an edge, over its length, up to which a load is on the edge: round-off."""
 ACCURACY = 0.01
 """Relative accuracy that is asked for by default."""
 
@@ -110,12 +112,32 @@ class Problem(StatedBodies):
     root: ClassVar[bool] = True
     inside: ClassVar[tuple[str, ...]] = (
         "adapts", "after_motions", "asked_accuracy", "bonded_edges", "bonds", "boundary_of", "condition_path",
-        "edge_conditions", "edges_of", "factors", "is_elastic", "loops", "on_mesh_of", "on_pairs_of", "opposite",
-        "opposite_edges", "part_of", "parts", "reach_of", "several", "sides_of", "to_be_meshed", "tool_action",
+        "edge_conditions", "edges_of", "factors", "is_elastic", "load_stops", "loops", "on_mesh_of", "on_pairs_of",
+        "opposite", "opposite_edges", "part_of", "parts", "reach_of", "several", "sides_of", "to_be_meshed",
+        "tool_action",
         "touching_bodies", "touching_parts", "volume_loads", "without_joints", "zones",
     )  # fmt: skip
     other_words: ClassVar[Mapping[str, str]] = {
-        "body": "bodies has several bodies by name; an only one has material and boundary at the top level"
+        "body": "bodies has several bodies by name; an only one has material and boundary at the top level",
+        **dict.fromkeys(
+            ("thickness", "depth", "width", "length"),
+            "forces are per thickness, and nothing else depends on it; divide forces by it",
+        ),
+        **dict.fromkeys(
+            ("E", "nu", "young_modulus", "poisson_ratio"),
+            "it belongs to material: {young_modulus: …, poisson_ratio: …}",
+        ),
+        **dict.fromkeys(
+            ("supports", "support", "boundary_conditions", "bc", "bcs", "constraints", "fixed", "fixtures", "symmetry"),
+            "what holds or loads an edge is in conditions, by edge name: {left: {fixed: true}}",
+        ),
+        **dict.fromkeys(
+            ("force", "forces", "pressure", "traction"),
+            "loads on edges are in conditions, by edge name: {top: {pressure: 20}}",
+        ),
+        **dict.fromkeys(("spring", "springs", "foundation"), "springs are a condition of an edge"),
+        **dict.fromkeys(("roller", "rollers"), "a rigid roller is a contact zone with surface: {kind: circle, …}"),
+        **dict.fromkeys(("friction", "mu"), "contact is frictionless; leave it out"),
     }
 
     tools: dict[Name, RigidTool] = Field(default_factory=dict)
@@ -157,12 +179,29 @@ class Problem(StatedBodies):
         elif problem is not None:
             issues += problem._mismatches_of_bodies()
         if problem is not None and not issues:
+            issues += problem._load_place_issues()
+        if problem is not None and not issues:
             issues += problem._variant_issues()
         if problem is None or issues:
             raise ProblemError(issues)
         for zone in problem.zones:
             problem.edges_of(zone)
         return problem
+
+    def _load_place_issues(self) -> Iterator[Issue]:
+        """Issues of loads that reach beyond the edge along which they are given."""
+        cases = ((("load_cases", name, "conditions"), case.conditions) for name, case in self.load_cases.items())
+        for room, conditions in ((("conditions",), self.edge_conditions), *cases):
+            for edge, condition in conditions.items():
+                length = self.edge(edge).length if condition.varies_along else 0.0
+                beyond = [stop for stop in condition.stops(length) if not -ON_EDGE <= stop / length <= 1 + ON_EDGE]
+                if beyond:
+                    message = (
+                        f"this load reaches to the distance {beyond[-1]:.6g} from the start of '{edge}', which is "
+                        f"{length:.6g} long; keep it on the edge"
+                    )
+                    path = (*room, edge)
+                    yield Issue(path=path if len(room) > 1 else self.condition_path(path), message=message)
 
     @classmethod
     def _missing_parts(cls, raw: RawValue) -> Iterator[Issue]:
@@ -359,6 +398,8 @@ class Problem(StatedBodies):
             return False
         groups = [self.conditions, *(case.conditions for case in self.load_cases.values())]
         named = [zone.edges for zone in self.contact_zones.values() if zone.edges is not None]
+        if any(edge in group and group[edge].varies_along for group in groups for edge in (one, other)):
+            return False
         return all(group.get(one) == group.get(other) for group in groups) and all(
             (one in edges) == (other in edges) for edges in named
         )

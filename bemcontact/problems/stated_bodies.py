@@ -177,6 +177,12 @@ class StatedBodies(SpecModel, Drawn):
             return self.conditions
         return {part.edge_name(own): it for part in self.parts for own, it in part.conditions.items()}
 
+    def load_stops(self, edge: Edge) -> list[float]:
+        """Distances [L] from the start of an edge at which a load on it jumps or kinks, under any load case."""
+        groups = (self.edge_conditions, *(case.conditions for case in self.load_cases.values()))
+        stops = (stop for group in groups if edge.name in group for stop in group[edge.name].stops(edge.length))
+        return [stop for stop in sorted({*stops}) if 0 < stop < edge.length]
+
     def condition_path(self, path: KeyPath) -> KeyPath:
         """Key path of a condition from ("conditions", name of the edge in the problem, …)."""
         if not self.bodies or path[:1] != ("conditions",):

@@ -27,6 +27,7 @@ from bemcontact.problems import (
     Units,
     Values,
 )
+from bemcontact.problems.conditions import Along
 
 JsonObject = Mapping[str, Any]
 """A record as it is written in JSON."""
@@ -58,7 +59,11 @@ def with_unit(text: str, unit: str) -> str:
 
 def field_on(field: Field, edge: Edge, unit: str = "") -> str:
     """Write the value of a field on an edge, or from where to where it goes: 50.625 kN/cm²; 3 … 5 N/mm²."""
-    return with_unit(_range(field.at(edge.points(np.linspace(0, 1, 41)))), unit)
+    ends = np.array([0.0, *(distance / edge.length for distance, _ in field.along), 1.0]).clip(0, 1)
+    fractions = np.linspace(ends[:-1], ends[1:], 41)[:, np.diff(ends) > 0]  # between two steps of a table
+    within = np.repeat(fractions[20:21], 41, axis=0)
+    along = Along(edge.length * fractions.ravel(), edge.length * within.ravel(), edge.length)
+    return with_unit(_range(field.at(edge.points(fractions.ravel()), along)), unit)
 
 
 def _range(values: Array) -> str:
@@ -91,6 +96,9 @@ def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]
                 yield f"{symbol}_{axis} = {field_on(field, edge, unit)}"
     if condition.pressure is not None:
         yield f"pressure {field_on(condition.pressure, edge, units.stress)}"
+    for force in condition.force:
+        over = "" if force.width is None else f" over {with_unit(number(force.width), units.length)}"
+        yield f"force {vector((force.x, force.y), units.line_force)}{over}"
 
 
 def materials_in_words(problem: Problem) -> list[str]:

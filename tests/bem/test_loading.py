@@ -5,6 +5,8 @@ import pytest
 from bodies import arc, even, mesh_of, rectangle, solved, values_of, without_rigid_motion
 from tool_problems import FREE, FREE_BY_HAND, FREE_CASES, HELD, HELD_BY_HAND, HELD_CASES, Spec, made
 
+import bemcontact
+from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.bem.body import Body, body_of
 from bemcontact.bem.loading import case_loadings, combined, particular_solution, permanent_loading, true_resultant
 from bemcontact.bem.mesh import build
@@ -182,3 +184,67 @@ def problem_at(corner: np.ndarray) -> Problem:
         boundary={"outer": [{"name": f"e{i}", "start": start, "elements": 2} for i, start in enumerate(starts)]},
         contact_zones={"base": {"edges": ["e0"], "surface": plane}},
     )
+
+
+BLOCK = """
+name: block
+material: {young_modulus: 1000, poisson_ratio: 0.3}
+boundary:
+  outer:
+    - {name: bottom, start: [0, 0], end: [10, 0], elements: 10}
+    - {name: right, end: [10, 4], elements: 4}
+    - {name: top, end: [0, 4], elements: 10}
+    - {name: left, elements: 4}
+conditions: {bottom: {fixed: true}, top: %s}
+contact_zones: {side: {edges: right, surface: {kind: plane, point: [10, 0], normal: [-1, 0]}}}
+accuracy: null
+"""
+DIVIDED = BLOCK.replace(
+    "    - {name: top, end: [0, 4], elements: 10}",
+    "    - {name: before, end: [8, 4], elements: 2}\n    - {name: top, end: [6, 4], elements: 2}\n"
+    "    - {name: after, end: [0, 4], elements: 6}",
+)
+
+
+@pytest.mark.parametrize(
+    ("along", "divided"),
+    [
+        ("{pressure: {along: [[2, 5], [4, 5]]}}", "{pressure: 5}"),
+        ("{force: {y: -10, width: 2, at: 3}}", "{force: {y: -10}}"),
+        ("{traction: {y: {along: [[2, -10], [4, 0]]}}}", "{traction: {y: {along: [[0, -10], [2, 0]]}}}"),
+        ("{traction: {x: {along: [[2, 10], [4, 0]]}}}", "{traction: {x: {constant: -30, x: 5}}}"),
+    ],
+)
+def test_a_load_on_a_part_of_an_edge_is_that_on_an_edge_of_its_own(along, divided):
+    """On the same elements all is the same."""
+    one, other = (
+        bemcontact.solve(bemcontact.loads(text % load)) for text, load in ((BLOCK, along), (DIVIDED, divided))
+    )
+    assert one.intervals
+    np.testing.assert_allclose(one.pressure, other.pressure, atol=1e-9 * one.pressure.max())
+
+
+@pytest.mark.parametrize("case", [False, True])
+def test_the_resultant_of_loads_along_an_edge_is_exact(case):
+    """Σ F and Σ x F of a trapezoid and of two forces; also of a load case."""
+    load = "{pressure: {along: [[2, 0], [4, 6], [4, 1], [7, 1]]}, force: [{y: -8, width: 1, at: 9}, {y: -5}]}"
+    text = BLOCK % load
+    if case:
+        text = text.replace(f", top: {load}", "") + f"load_cases: {{wind: {{conditions: {{top: {load}}}}}}}\n"
+    problem = bemcontact.loads(text).to_be_meshed(0.1)
+    body = body_of(first_mesh(problem.with_case("wind") if case else problem))
+    x = 10 - np.array([2 + 4 / 3, 5.5, 9, 5])  # the edge runs to the left
+    force = np.array([6, 3, 8, 5])
+    np.testing.assert_allclose(body.acting.true_force, [0, -force.sum()], atol=1e-12)
+    x0 = body.mesh.center[0]
+    np.testing.assert_allclose(sum(body.acting.true_moments), -np.sum((x - x0) * force), rtol=1e-12)
+
+
+def test_a_stated_element_across_a_jump_of_a_load_is_refused():
+    text = (BLOCK % "{force: {y: -10, width: 2, at: 3}}").replace(
+        "end: [0, 4], elements: 10", "end: [0, 4], elements: 4"
+    )
+    with pytest.raises(bemcontact.ProblemError, match=r"conditions\.top: .*distance 2 .*add 0\.2 to ends_at"):
+        bemcontact.solve(bemcontact.loads(text))
+    solved = bemcontact.solve(bemcontact.loads(text.replace("end: [0, 4],", "end: [0, 4], ends_at: [0.2, 0.4],")))
+    assert solved.certified

@@ -33,6 +33,20 @@ def test_a_command_works_with_searches_for_garbage(in_program: bool):
         gc.unfreeze()
 
 
+@pytest.mark.parametrize(
+    ("command", "given", "meant"),
+    [
+        ("solve", "--plot", "--figure"), ("solve", "--output", "--out"), ("solve", "--tolerance", "--accuracy"),
+        ("solve", "--method", "--formulation"), ("solve", "--mesh", "--refine"), ("solve", "--load_case", "--case"),
+        ("study", "--jobs", "--workers"), ("check", "--plot", "--figure"),
+    ],
+)  # fmt: skip
+def test_another_word_for_an_option_is_led_to_it(block: Path, command: str, given: str, meant: str):
+    answer = run(command, block, given, "x")
+    assert answer.exit_code == 2
+    assert re.search(rf"No such option:? '?{given}'?.*{meant}", " ".join(answer.stderr.split()))
+
+
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
 @pytest.mark.parametrize("command", ["check", "solve"])
 def test_figures_are_written_by_their_ending(block: Path, tmp_path: Path, command: str, ending: str):

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from bemcontact.errors import ProblemError
 from bemcontact.problems import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
+from bemcontact.problems.conditions import Along
 
 NUMBER = st.floats(-100, 100)
 
@@ -46,12 +47,54 @@ def test_displacement_along_one_axis_goes_with_traction_along_the_other():
         ({"pressure": {}}, "pressure: the mapping is empty"),
         ({"pressure": True}, "pressure: expected a number, or a mapping"),
         ({"pressure": {"xxx": 1}}, "pressure.xxx: unknown key 'xxx'; did you mean 'xx'?"),
+        ({"fixed": False}, "fixed: false says nothing"),
+        ({"fixed": True, "displacement": {"y": 1}}, "fixed is displacement 0 along y"),
+        ({"symmetry": "z"}, "symmetry: expected 'x' or 'y', found the text 'z'"),
+        ({"symmetry": "x", "displacement": {"x": 1}}, "symmetry is displacement 0 along x"),
+        ({"fixed": True, "pressure": 1}, "displacement cannot be given too"),
+        ({"force": {"y": 1, "at": 2}}, "force[0]: a force at a place needs a width"),
+        ({"force": {"width": 2}}, "force[0]: the force is zero"),
+        ({"force": {"y": 1}, "displacement": {"y": 0}}, "both displacement and force are given along y"),
+        ({"force": [{"y": 1}, {"y": 1, "width": -2}]}, "force[1].width: must be greater than 0"),
+        ({"pressure": {"along": [[0, 1]]}}, "a table has two or more pairs"),
+        ({"pressure": {"along": [[-1, 1], [2, 1]]}}, "a table has two or more pairs"),
+        ({"pressure": {"along": [[3, 1], [2, 1]]}}, "must ascend; 2 stands after 3"),
+        ({"pressure": {"along": [[1, 1], [1, 2], [1, 3]]}}, "more than two values at the distance 1"),
+        ({"displacement": {"x": {"along": [[0, 1], [2, 1]]}}}, "along is for loads"),
     ],
 )
 def test_contradictory_and_empty_conditions_are_refused(keys, words):
     with pytest.raises(ProblemError) as caught:
         Condition(**keys)
     assert words in str(caught.value)
+
+
+def test_fixed_and_symmetry_are_displacements():
+    held = Condition(displacement={"x": 0, "y": 0})
+    assert Condition(fixed=True) == held
+    assert Condition(**held.to_dict()) == held
+    assert Condition(symmetry="y") == Condition(displacement={"y": 0})
+    assert Condition(symmetry="y", displacement={"x": 1}) == Condition(displacement={"x": 1, "y": 0})
+    assert Condition(symmetry="x", traction={"y": 1}).traction.y == Field(constant=1)
+
+
+def test_a_table_is_linear_between_its_pairs_and_jumps_where_two_have_one_distance():
+    """On which side of a jump a place is, the place within the same piece tells; beyond the table the value is 0."""
+    field = Field(constant=1, along=[[1, 2], [3, 6], [3, -1], [4, 0]])
+    at, within = np.array([0.5, 1.0, 1.0, 2.0, 3.0, 3.0, 3.5, 4.5]), np.array([0.4, 0.9, 1.1, 2.0, 2.9, 3.1, 3.5, 4.5])
+    np.testing.assert_allclose(
+        field.at(np.zeros((8, 2)), Along(at, within, 5.0)), 1 + np.array([0, 0, 2, 4, 6, -1, -0.5, 0]), rtol=1e-15
+    )
+
+
+@given(st.floats(0.1, 2), st.floats(1, 4), st.integers(-9, 9), st.integers(-9, 9))
+def test_a_force_is_the_integral_of_its_traction(width, at, x, y):
+    force = Condition(force={"x": x, "y": y + 200, "width": width, "at": at}).force[0]
+    first, last = force.part(5.0)
+    middle = np.array([first + last, 2 * first - 0.1, 2 * last + 0.1]) / 2
+    traction = force.traction(Along(middle, middle, 5.0))
+    np.testing.assert_allclose(traction[0] * (last - first), [x, y + 200], rtol=1e-12)
+    assert not traction[1:].any()
 
 
 def test_loads_are_absent_unless_given():

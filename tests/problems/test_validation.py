@@ -24,7 +24,26 @@ def test_every_key_of_the_schema_is_found_where_its_mapping_has_it():
             assert name in homes(Problem, key)
 
 
-@pytest.mark.parametrize("word", ["force", "load"])
-def test_a_force_on_an_edge_is_told_to_be_a_traction(word: str):
-    with pytest.raises(ProblemError, match="force per area"):
+@pytest.mark.parametrize(
+    ("word", "words"),
+    [
+        ("load", "is force: {x: …"), ("roller", r"displacement: \{y: 0\}"), ("clamped", "write fixed: true"),
+        ("hinge", "no point can bear a force"), ("free", "leave it out"),
+    ],
+)  # fmt: skip
+def test_words_of_others_for_a_condition_are_led_to_its_keys(word: str, words: str):
+    with pytest.raises(ProblemError, match=words):
         Condition(**{word: {"y": -100}})
+
+
+@pytest.mark.parametrize(
+    ("word", "words"),
+    [
+        ("thickness", "forces are per thickness"), ("E", "belongs to material"), ("friction", "frictionless"),
+        ("supports", "in conditions, by edge name"), ("forces", "loads on edges are in conditions"),
+        ("rollers", "kind: circle"),
+    ],
+)  # fmt: skip
+def test_words_of_others_at_the_top_are_led_to_their_places(word: str, words: str):
+    with pytest.raises(ProblemError, match=words):
+        Problem(**{word: 1})

@@ -117,6 +117,13 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
         ("{pressure: 3}", "{pressure: -3}"),
         ("  top: {pressure: 3}", "  top: {pressure: 3}\n  bottom: {pressure: 3}"),
         ("more: {conditions: {top: {pressure: 1}}}", "more: {}"),
+        ("  top: {pressure: 3}", "  top: {pressure: 3}\n  right: {fixed: false}"),
+        ("  top: {pressure: 3}", "  top: {pressure: 3}\n  right: {symmetry: z}"),
+        ("  top: {pressure: 3}", "  top: {pressure: 3}\n  right: {roller: true}"),
+        ("{pressure: 3}", "{force: {y: -120, at: 3}}"),
+        ("{pressure: 3}", "{force: {y: -120, at: 3, width: 8}}"),
+        ("{pressure: 3}", "{force: {y: -120, at: 8, width: 8}}"),
+        ("{pressure: 3}", "{pressure: {along: [[20, 1], [0, 3]]}}"),
     ],
 }
 """Kind of a mistake -> what is replaced in the good spec, and by what."""

@@ -28,6 +28,7 @@ from bemcontact.problems import (
     Problem,
     Spline,
 )
+from bemcontact.problems.conditions import Along
 from bemcontact.report.figures.page import (
     BLACK,
     BLUE,
@@ -232,11 +233,17 @@ def _draw_mesh(axes: Axes, problem: Problem, mesh: Mesh) -> None:
         axes.scatter(*nodes.T, s=diameter**2, c="white", edgecolors=colors, linewidths=0.9, zorder=4)
 
 
-def _spread(edge: Edge, size: float, spots: int, fewest: int = 2) -> tuple[Array, Array]:
-    """Choose points (k, 2) on an edge for symbols, about `spots` over the body's size, and the outward normals."""
+def _spread(edge: Edge, size: float, spots: int, fewest: int = 2) -> Array:
+    """Choose fractions (k,) of the length of an edge for symbols, about `spots` over the body's size."""
     count = int(np.clip(round(spots * edge.length / size), fewest, spots))
-    fractions = (np.arange(count) + 0.5) / count
-    return edge.points(fractions), edge.normals(fractions)
+    return (np.arange(count) + 0.5) / count
+
+
+def _loaded(problem: Problem, edge: Edge) -> Array:
+    """Fractions (k,) for arrows: those of `_spread`, and some between places where the load jumps or kinks."""
+    stops = np.array([0.0, *problem.load_stops(edge), edge.length]) / edge.length
+    between = (stops[:-1, None] + np.diff(stops)[:, None] * [0.1, 0.5, 0.9]).ravel() if len(stops) > 2 else []
+    return np.unique(np.append(_spread(edge, problem.size, 20), between))
 
 
 def draw_supports(axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like) -> Iterator[Array]:
@@ -249,7 +256,8 @@ def draw_supports(axes: Axes, problem: Problem, displacement: Displacement = np.
             points = edge.points(fractions)
             yield draw_ground(axes, points + displacement(points), -edge.normals(fractions), 0.025 * size, BLUE)
             continue
-        points, normals = _spread(edge, size, 8)
+        fractions = _spread(edge, size, 8)
+        points, normals = edge.points(fractions), edge.normals(fractions)
         for axis in held.given:
             column = "xy".index(axis)
             away = np.zeros_like(normals)
@@ -263,17 +271,20 @@ def draw_loads(axes: Axes, problem: Problem, displacement: Displacement = np.zer
     Tractions along an edge are drawn beside it.
     """
     size = problem.size
-    across = [_spread(edge, size, 20) for edge in problem.edges]
-    tractions = [_traction(problem, e.name, *at) for e, at in zip(problem.edges, across, strict=True)]
+    across = [_loaded(problem, edge) for edge in problem.edges]
+    tractions = [_traction(problem, edge, at) for edge, at in zip(problem.edges, across, strict=True)]
     largest = max(float(np.hypot(*traction.T).max()) for traction in tractions)
-    for edge, (points, normals), traction in zip(problem.edges, across, tractions, strict=True):
+    for edge, fractions, traction in zip(problem.edges, across, tractions, strict=True):
         if not traction.any():
             continue
+        fractions, traction = fractions[traction.any(axis=1)], traction[traction.any(axis=1)]
+        points, normals = edge.points(fractions), edge.normals(fractions)
         moved = points + displacement(points)
         pull = (traction * normals).sum(axis=1)
         if (np.abs(pull) <= ALONG * np.hypot(*traction.T)).all():
-            points, normals = _spread(edge, size, 8, fewest=1)
-            arrows = _traction(problem, edge.name, points, normals) * (0.1 * size / largest)
+            fractions = fractions if problem.load_stops(edge) else _spread(edge, size, 8, fewest=1)
+            points, normals = edge.points(fractions), edge.normals(fractions)
+            arrows = _traction(problem, edge, fractions) * (0.1 * size / largest)
             tails = points + displacement(points) + 0.02 * size * normals - arrows / 2
             yield draw_arrows(axes, tails, arrows, GREEN)
             continue
@@ -394,9 +405,14 @@ def surface_line(problem: Problem, zone: str, overhang: float) -> tuple[Array, A
             return points, np.column_stack([-tangents[:, 1], tangents[:, 0]])
 
 
-def _traction(problem: Problem, edge: str, points: Array, normals: Array) -> Array:
-    """Prescribed traction (k, 2) at points of an edge with these outward normals."""
-    acting = [factor * applied_traction(condition, points, normals) for factor, condition in _acting(problem, edge)]
+def _traction(problem: Problem, edge: Edge, fractions: Array) -> Array:
+    """Prescribed traction (k, 2) at fractions (k,) of the length of an edge."""
+    points, normals, distance = edge.points(fractions), edge.normals(fractions), fractions * edge.length
+    along = Along(distance, distance, edge.length)
+    acting = [
+        factor * applied_traction(condition, points, normals, along)
+        for factor, condition in _acting(problem, edge.name)
+    ]
     return _total(acting, np.zeros_like(points))
 
 
