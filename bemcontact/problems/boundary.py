@@ -12,9 +12,10 @@ from pydantic import model_validator
 
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problems.curves import CircularArc, Curve, Edge, EllipticArc, Pair
-from bemcontact.problems.geometry import AnyEdge, Arc, Grading, LoopSpec, Place
+from bemcontact.problems.geometry import AnyEdge, Arc, Grading, LoopSpec, Mirror, Place
 from bemcontact.problems.loop_closure import JOINT_TOLERANCE, gap_issues, other_way_round
 from bemcontact.problems.loops import loop_issues
+from bemcontact.problems.outlines import OutlineError, issue_at, mirror_image, mirrored_loop, plain_loop
 from bemcontact.problems.validation import LARGEST_STATED, Point, SpecModel, validation_error
 from bemcontact.problems.wording import unknown_word
 
@@ -44,10 +45,15 @@ class Boundary(SpecModel):
     """The edges of the outer loop, counterclockwise: the body is on the left."""
     holes: tuple[LoopSpec, ...] = ()
     """The loops of edges around each hole, clockwise: the body is on the left."""
+    mirror: Mirror | None = None
+    """The line on which the outline is mirrored: the outer edges then begin and end on it, and are half of the outline.
+    The other half has the same names with the word mirrored, and so have the holes."""
 
     @model_validator(mode="after")
     def _encloses_a_body(self) -> Self:
         """Refuse loops that do not enclose a body; later checks rely on earlier ones."""
+        if issues := [*self._ill_stated()]:
+            raise validation_error("Boundary", issues)
         loops = [*zip(self.loop_paths, self.loop_specs, strict=True)]
         issues = [
             *_repeated_names(loops),
@@ -82,15 +88,30 @@ class Boundary(SpecModel):
                 return f"; or does '{loop[i].name}' run the wrong way round its center? Then give {other[1]}"
         return ""
 
-    @property
+    def _ill_stated(self) -> Iterator[Issue]:
+        """Issues of loops that cannot be written as plain edges."""
+        for path, loop in zip(self.loop_paths, (self.outer, *self.holes), strict=False):
+            try:
+                plain = plain_loop(loop)
+                if self.mirror is not None and path == ("outer",):
+                    mirrored_loop(plain, self.mirror)
+            except OutlineError as error:
+                yield issue_at(error, path)
+
+    @cached_property
     def loop_specs(self) -> tuple[tuple[AnyEdge, ...], ...]:
-        """All loops as the user gave them, the outer one first."""
-        return (self.outer, *self.holes)
+        """All loops as plain edges, the outer one first: without fillets, tangents and mirror."""
+        outer, *holes = map(plain_loop, (self.outer, *self.holes))
+        if self.mirror is not None:
+            outer = mirrored_loop(outer, self.mirror)
+            holes += [mirror_image(hole, self.mirror) for hole in holes]
+        return (outer, *holes)
 
     @property
     def loop_paths(self) -> tuple[KeyPath, ...]:
-        """Key path of each loop, relative to the boundary."""
-        return (("outer",), *(("holes", i) for i in range(len(self.holes))))
+        """Key path of each loop, relative to the boundary; a mirrored hole has that of its original."""
+        holes = [("holes", i) for i in range(len(self.holes))]
+        return (("outer",), *holes, *(holes if self.mirror is not None else ()))
 
     @cached_property
     def loops(self) -> tuple[tuple[Edge, ...], ...]:

@@ -5,7 +5,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
 from pydantic import Field, PlainValidator, Strict, WithJsonSchema, model_validator
 
-from bemcontact.errors import KeyPath
+from bemcontact.errors import Issue, KeyPath
 from bemcontact.problems.curves import CircularArc, Curve, EllipticArc, Segment, unit_vector
 from bemcontact.problems.tagged_union import TaggedUnion
 from bemcontact.problems.validation import (
@@ -19,6 +19,8 @@ from bemcontact.problems.validation import (
     PositivePair,
     SpecModel,
     invalid,
+    left_out,
+    validation_error,
 )
 from bemcontact.problems.wording import described
 
@@ -120,6 +122,10 @@ class _EdgeBase(SpecModel):
         return tuple(places)
 
 
+Tangent = Literal["start", "end", "both"]
+"""The end of an edge, or both, at which it goes on smoothly from the neighboring edge."""
+
+
 class Line(_EdgeBase):
     """A straight edge. An end that is left out is taken from the neighboring edge."""
 
@@ -131,6 +137,17 @@ class Line(_EdgeBase):
     """The first point [x, y]; if left out, the end of the previous edge."""
     end: Point | None = None
     """The last point [x, y]; if left out, the start of the next edge."""
+    tangent: Tangent | None = None
+    """The end at which the line touches the neighboring arc, which has center and radius: start, end or both. The point
+    there follows from it, also the end of the arc."""
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Self:
+        """Refuse a stated end that follows from a tangent."""
+        for side in ("start", "end"):
+            if self.tangent in (side, "both") and getattr(self, side) is not None:
+                raise invalid(f"with tangent: {self.tangent} the {side} follows from the neighboring arc; leave it out")
+        return self
 
     def own_ends(self) -> tuple[Point | None, Point | None]:
         """Both ends; None for an end that is left out."""
@@ -152,10 +169,11 @@ class Arc(_EdgeBase):
 
     kind: Literal["arc"] = "arc"
     """The shape of the edge: line, arc, or ellipse."""
-    center: Point
+    center: Point = left_out()
     """The center [x, y]."""
     radius: Positive | None = None
-    """The radius; only together with angles."""
+    """The radius, with angles; with the center alone if neighboring edges are tangent; or of an arc that touches both
+    neighbors."""
     angles: Point | None = None
     """The polar angles [first, last] in degrees; counterclockwise if the last angle is the larger one."""
     start: Point | None = None
@@ -164,11 +182,21 @@ class Arc(_EdgeBase):
     """The last point [x, y] of an arc without angles; if left out, the start of the next edge."""
     clockwise: Flag = False
     """Whether an arc without angles runs clockwise."""
+    tangent: Tangent | None = None
+    """The end at which an arc without center goes on smoothly: start or end, with both its ends known; or both, between
+    two arcs with center and radius, with a radius of its own."""
 
     @model_validator(mode="after")
     def _one_form(self) -> Self:
         """Refuse a mixture of angles and ends."""
         by_angles, by_points = "radius and angles", "start, end and clockwise"
+        if self.tangent is not None:
+            self._ensure_tangent(self.tangent)
+            return self
+        if self.center is None:
+            raise validation_error("Arc", [Issue(path=("center",), message="missing; give the center [x, y]")])
+        if self.is_round:
+            return self
         if (self.radius is None) != (self.angles is None):
             given, missing = ("angles", "radius") if self.radius is None else ("radius", "angles")
             raise invalid(f"an arc with {given} needs {missing} too; give both, or {by_points} instead")
@@ -177,6 +205,23 @@ class Arc(_EdgeBase):
                 raise invalid(f"an arc has either {by_angles}, or {by_points}, not both; remove one form")
             _check_sweep(self.angles)
         return self
+
+    def _ensure_tangent(self, tangent: Tangent) -> None:
+        """Refuse what a tangent leaves no room for, and what it needs."""
+        if self.center is not None or self.angles is not None:
+            raise invalid("an arc with tangent has no center and no angles, which follow from it; leave them out")
+        if tangent == "both":
+            if self.radius is None:
+                raise invalid("an arc that is tangent to both neighbors needs a radius")
+            if self.start is not None or self.end is not None:
+                raise invalid("with tangent: both the ends follow from the neighboring arcs; leave start and end out")
+        elif self.radius is not None or self.clockwise:
+            raise invalid(f"with tangent: {tangent} radius and direction follow from both ends; leave them out")
+
+    @property
+    def is_round(self) -> bool:
+        """Whether it is stated by center and radius alone: its ends follow from its neighbors."""
+        return self.center is not None and self.radius is not None and self.angles is None
 
     def own_ends(self) -> tuple[Point | None, Point | None]:
         """Both ends; None for an end that is left out."""
@@ -249,6 +294,55 @@ class EllipseArc(_EdgeBase):
         )
 
 
+class Fillet(_EdgeBase):
+    """A rounded corner between the edges before and after it: an arc that is tangent to both, which it shortens."""
+
+    example: ClassVar[str] = "{fillet: 2}"
+
+    kind: Literal["fillet"] = "fillet"
+    """The shape of the edge: a fillet has the key fillet."""
+    name: Name | None = None  # pyright: ignore[reportIncompatibleVariableOverride]
+    """The name of the edge; if left out, those of both neighbors with a hyphen."""
+    fillet: Positive
+    """The radius."""
+
+    def as_spec(self) -> Any:
+        """Return its keys; the key fillet tells the kind."""
+        return {key: value for key, value in self.to_dict().items() if key != "kind"}
+
+
+class Mirror(SpecModel):
+    """The line on which half an outline is mirrored: x = value, or y = value."""
+
+    example: ClassVar[str] = "{x: 0}"
+
+    x: Number | None = None
+    """The place of a line parallel to the y axis."""
+    y: Number | None = None
+    """The place of a line parallel to the x axis."""
+
+    @model_validator(mode="after")
+    def _one_line(self) -> Self:
+        """Refuse two lines, and none."""
+        if (self.x is None) == (self.y is None):
+            raise invalid("a mirror line is either {x: …} or {y: …}; give one of them")
+        return self
+
+    def image(self, point: Point) -> Point:
+        """The mirror image of a point."""
+        x, y = point
+        return (x if self.x is None else 2 * self.x - x, y if self.y is None else 2 * self.y - y)
+
+    def distance(self, point: Point) -> float:
+        """Distance [L] of a point from the line."""
+        return abs(point[0] - self.x) if self.x is not None else abs(point[1] - (self.y or 0.0))
+
+    @property
+    def words(self) -> str:
+        """The line as a formula."""
+        return f"x = {self.x:g}" if self.x is not None else f"y = {self.y:g}"
+
+
 def _check_sweep(angles: Point) -> None:
     """Refuse an arc without length, or of more than a full turn."""
     sweep = abs(angles[1] - angles[0])
@@ -262,13 +356,18 @@ def _moved(center: Point, distance: float, direction: Point) -> Point:
 
 AnyEdge = Line | Arc | EllipseArc
 """An edge of any shape."""
+StatedEdge = AnyEdge | Fillet
+"""An edge as a user states it."""
 OTHER_KINDS = {
     "circle": "a full circle is kind: arc with center, radius and angles: [0, 360], and a hole has angles: [360, 0]",
     "polyline": "give each straight piece as an edge of its own, with a name and its start",
 }
 """Words that are no kinds of edges -> what to write instead."""
 EdgeSpec = Annotated[
-    AnyEdge, TaggedUnion(what="an edge", members=get_args(AnyEdge), default="line", other_kinds=OTHER_KINDS)
+    StatedEdge,
+    TaggedUnion(
+        what="an edge", members=get_args(StatedEdge), default="line", other_kinds=OTHER_KINDS, own_keys=("fillet",)
+    ),
 ]
 """An edge whose class is chosen by the key `kind`."""
 LoopSpec = Annotated[tuple[EdgeSpec, ...], Field(min_length=1)]

@@ -24,12 +24,14 @@ class TaggedUnion:
     members : classes of the union; the default of the key `kind` of each is its kind
     default : kind of a mapping without the key `kind`; if None, the key is required
     other_kinds : words that are no kinds -> what to write instead
+    own_keys : kinds that are told by a key of their name, so that `kind` may be left out
     """
 
     what: str
     members: tuple[type[SpecModel], ...]
     default: str | None = None
     other_kinds: Mapping[str, str] = field(default_factory=dict[str, str])
+    own_keys: tuple[str, ...] = ()
 
     @property
     def example(self) -> str:
@@ -57,8 +59,12 @@ class TaggedUnion:
     def _choice(self, kind: str, member: JsonSchemaValue) -> JsonSchemaValue:
         """Apply the schema of a member if its kind is given, or left out for the default."""
         condition: JsonSchemaValue = {"properties": {"kind": {"const": kind}}}
-        if kind != self.default:
+        if kind in self.own_keys:
+            condition = {"anyOf": [{**condition, "required": ["kind"]}, {"required": [kind]}]}
+        elif kind != self.default:
             condition["required"] = ["kind"]
+        elif self.own_keys:
+            condition["not"] = {"anyOf": [{"required": [key]} for key in self.own_keys]}
         return {"if": condition, "then": member}
 
     def _chosen(self, value: Any) -> SpecModel:
@@ -68,7 +74,8 @@ class TaggedUnion:
         if not isinstance(value, Mapping):
             expected = f"expected a mapping that describes {self.what}, such as {self.example}"
             raise invalid(f"{expected}; found {described(value)}")
-        kind = value.get("kind", self.default)
+        told = next((key for key in self.own_keys if key in value), self.default)
+        kind = value.get("kind", told)
         if not isinstance(kind, str) or kind not in self.kinds:
             raise validation_error(self.what, [Issue(path=("kind",), message=self._wrong_kind(value))])
         if "kind" not in value and (better := self._fitting(kind, value)):

@@ -12,10 +12,10 @@ from test_architecture import FOUNDATION, PACKAGE, ROOMS
 import bemcontact
 
 
-def problem_of(page: str) -> bemcontact.Problem:
-    """The first problem of a page."""
-    first = next(token for token in pages.tokens(pages.DOCS / page) if token.info == "yaml")
-    return bemcontact.loads(first.content)
+def problem_of(page: str, file: str = "") -> bemcontact.Problem:
+    """The first problem of a page, or that which is called by the name of a file."""
+    blocks = (token.content for token in pages.tokens(pages.DOCS / page) if token.info == "yaml")
+    return bemcontact.loads(next(block for block in blocks if file in block.partition("\n")[0]))
 
 
 def test_the_block_is_in_uniform_compression():
@@ -27,7 +27,7 @@ def test_the_block_is_in_uniform_compression():
 
 def test_the_ring_hangs_on_its_pin():
     """What pulls is 25 on half of the outline; force and ends within their error bars."""
-    result = bemcontact.solve(problem_of("how-to/body.md"))
+    result = bemcontact.solve(problem_of("how-to/body.md", "ring.yaml"))
     assert result.holds
     bars = {bar.quantity: bar.bar for bar in result.accuracy.bars}
     pull = 25 * 20 * math.pi
@@ -36,6 +36,17 @@ def test_the_ring_hangs_on_its_pin():
     within = (bars["start"] + bars["end"]) * (interval.end_arc - interval.start_arc)
     assert interval.start == pytest.approx((-interval.end[0], interval.end[1]), abs=within)
     assert interval.start[1] > 0  # the crown of the pin
+
+
+def test_the_cam_presses_as_hertz_has_it():
+    """Its nose has the radius 8, and b/R is 0.017: Hertz is off by less than 0.1 %; the rest is the error bar."""
+    result = bemcontact.solve(problem_of("how-to/body.md", "cam.yaml"))
+    assert result.holds
+    modulus = 210e3 / (1 - 0.3**2)
+    half_width = math.sqrt(4 * 400 * 8 / (math.pi * modulus))
+    peak, length = result.accuracy.bar_of("peak"), result.accuracy.bar_of("length")
+    assert peak.value == pytest.approx(2 * 400 / (math.pi * half_width), rel=peak.bar + 1e-3)
+    assert length.value == pytest.approx(2 * half_width, rel=length.bar + 1e-3)
 
 
 def test_the_roller_of_the_readme_is_that_of_hertz():

@@ -9,7 +9,8 @@ from bemcontact.problems import Arc, EllipseArc, Grading, Line
 @pytest.mark.parametrize(
     ("keys", "words"),
     [
-        ({"radius": 1}, "an arc with radius needs angles too"),
+        ({"angles": [0, 90]}, "an arc with angles needs radius too"),
+        ({"tangent": "start", "angles": [0, 90]}, "an arc with tangent has no center and no angles"),
         ({"angles": (0, 90)}, "an arc with angles needs radius too"),
         ({"radius": 1, "angles": (0, 90), "start": (1, 0)}, "not both"),
         ({"radius": 1, "angles": (0, 90), "clockwise": True}, "not both"),

@@ -796,7 +796,12 @@ def test_schema_knows_contours_and_variants(old, new, path, message):
         ),
         ("elements: 8}", "elements: 0}", "boundary.holes[0][0].elements", "0 is not valid under any of the given"),
         ("radius: 0.25", "radius: 0.25, knots: 2", "boundary.holes[0][0]", "('knots' was unexpected)"),
-        ("kind: arc", "kind: ark", "boundary.holes[0][0].kind", "'ark' is not one of ['line', 'arc', 'ellipse']"),
+        (
+            "kind: arc",
+            "kind: ark",
+            "boundary.holes[0][0].kind",
+            "'ark' is not one of ['line', 'arc', 'ellipse', 'fillet']",
+        ),
         ("kind: plane, ", "", "contact_zones.foot.surface", "'kind' is a required property"),
         ("normal: [0, 1]", "normal: 1", "contact_zones.foot.surface.normal", "1 is not of type 'array'"),
         ("edges: bottom", "edges: []", "contact_zones.foot.edges", "[] should be non-empty"),

@@ -111,6 +111,14 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
         ("point: [0, 0]", "point: 0, 0"),
         ("load_cases:", "accuracy: 1%\nload_cases:"),
     ],
+    "Fillets, tangents and mirrors": [
+        ("    - {name: left", "    - {fillet: 30}\n    - {name: left"),
+        ("    - {name: left", "    - {fillet: big}\n    - {name: left"),
+        ("start: [0, 20], elements: 2}", "start: [0, 20], elements: 2, tangent: both}"),
+        ("{name: left, start: [0, 20],", "{name: left, tangent: both,"),
+        ("  outer:", "  mirror: {x: 0, y: 0}\n  outer:"),
+        ("  outer:", "  mirror: {x: 7}\n  outer:"),
+    ],
     "Conditions and loads": [
         ("{pressure: 3}", "{}"),
         ("{pressure: 3}", "{pressure: 3, traction: {y: 1}}"),
