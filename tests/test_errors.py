@@ -37,7 +37,7 @@ def test_control_characters_separators_and_changes_of_direction_are_hidden():
             assert hidden_character(character), f"{code:x}"
 
 
-@pytest.mark.parametrize("text", ["N/mm²", "µ", "é", "Ω", "模型", "מודל", "\u200c", "👩\u200d🔧", "a\u00a0b", "☃"])
+@pytest.mark.parametrize("text", ["MPa", "µ", "é", "Ω", "模型", "מודל", "\u200c", "👩\u200d🔧", "a\u00a0b", "☃"])
 def test_letters_of_all_scripts_are_not_hidden(text):
     assert hidden_character(text) is None
     assert escaped(text) == text

@@ -42,6 +42,7 @@ from bemcontact.problems.geometry import MOST_ELEMENTS
 from bemcontact.problems.joints import without_joints
 from bemcontact.problems.key_path import RawValue, existing_path, parsed_path, with_entry
 from bemcontact.problems.load_case import Combination, LoadCase
+from bemcontact.problems.quantities import with_numbers
 from bemcontact.problems.reference import ReferenceSpec
 from bemcontact.problems.rigid_surface import DeflectedContour
 from bemcontact.problems.stated_bodies import StatedBodies
@@ -165,11 +166,16 @@ class Problem(StatedBodies):
         """Check the parts against each other; if some parts are wrong, check the others."""
         if isinstance(data, Mapping) and data.get("bodies"):
             data = {key: value for key, value in data.items() if value is not None or key not in OF_ONE_BODY}
+        data, unread = with_numbers(data)
+        if any(issue.path[:1] == ("units",) for issue in unread):
+            raise ProblemError(unread)
         try:
             problem = handler(data)
             raw, issues = RawValue((), problem), []
         except ValidationError as error:
-            problem, raw, issues = None, RawValue((), data), issues_of(error)
+            taken = {issue.path for issue in unread}
+            problem, raw = None, RawValue((), data)
+            issues = [*unread, *(issue for issue in issues_of(error) if issue.path not in taken)]
         issues += cls._missing_parts(RawValue((), data))
         several = bool(raw.below(cls, "bodies").value)
         if not several:

@@ -1,6 +1,7 @@
 """Labels of units, and what is known of numbers where the labels are those of known units."""
 
 from collections.abc import Iterator, Mapping
+from math import isclose
 from typing import ClassVar
 
 from bemcontact.problems.validation import Label, SpecModel
@@ -15,6 +16,8 @@ NEWTONS = {
     "kgf": 9.80665, "kp": 9.80665, "lbf": 4.4482216152605, "lb": 4.4482216152605, "kip": 4448.2216152605,
 }  # fmt: skip
 """Label of a unit of force -> the unit in newtons."""
+NAMED = {1.0: "Pa", 1e3: "kPa", 1e6: "MPa", 1e9: "GPa"}
+"""Unit of stress in pascals -> its name."""
 STIFFEST, DIAMOND = 2e12, 1.2e12
 """Young's modulus [Pa] above which there is no solid, and that of diamond, which is the largest of a bulk solid."""
 SOFTEST = 1e3
@@ -28,7 +31,7 @@ DERIVED = "units has only length and force; pressures, stresses and moduli are i
 
 
 class Units(SpecModel):
-    """Labels of the units of all numbers. Numbers are not converted."""
+    """Labels of the units of all numbers. Numbers are not converted; values with units are, such as 210 GPa."""
 
     example: ClassVar[str] = "{length: mm, force: N}"
     other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
@@ -42,8 +45,9 @@ class Units(SpecModel):
 
     @property
     def stress(self) -> str:
-        """The label of the unit of stress, such as kN/mm²; empty if a label is missing."""
-        return f"{self.force}/{self.length}²" if self.force and self.length else ""
+        """The label of the unit of stress, such as MPa or kN/cm²; empty if a label is missing."""
+        named = next((name for size, name in NAMED.items() if self.pascals and isclose(self.pascals, size)), None)
+        return named or (f"{self.force}/{self.length}²" if self.force and self.length else "")
 
     @property
     def line_force(self) -> str:

@@ -48,7 +48,7 @@ def block(angle: float, refine: int = 1, right: dict[str, object] | None = None)
 
 @pytest.mark.parametrize("depth", [-1.0, -1e-7, 0.0, 1.0])
 def test_a_surface_drawn_inside_a_free_body_is_noted(depth: float):
-    """A block 20 high under 3 N/mm² is compressed by about 2.6e-4: 1 is far more, 1e-7 is not."""
+    """A block 20 high under 3 MPa is compressed by about 2.6e-4: 1 is far more, 1e-7 is not."""
     held = block(90.0).problem
     assert held is not None
     lifted = held.with_value("contact_zones.foot.surface.point", [0, -depth])

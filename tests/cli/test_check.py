@@ -42,7 +42,7 @@ def test_check_prints_the_facts(block: Path):
         assert word in answer.stdout
     assert "13 elements, 26 nodes, 11 contact points" in answer.stdout  # two nodes for each element
     assert re.search(r"Degrees of freedom +52\b", answer.stdout)
-    assert "(0, -120) N/mm" in answer.stdout  # 3 N/mm² down on 40 mm
+    assert "(0, -120) N/mm" in answer.stdout  # 3 MPa down on 40 mm
     assert max(map(len, answer.stdout.splitlines())) <= 100
 
 

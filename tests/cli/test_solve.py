@@ -23,7 +23,7 @@ def test_solve_prints_a_short_table(block: Path):
     assert answer.stderr == ""
     assert "UNDEFORMED" in answer.stdout.upper()
     assert_states(answer.stdout, "Equations … unique solution proved. … Mesh … not assessed.")
-    assert "N/mm²" in answer.stdout
+    assert "MPa" in answer.stdout
     assert max(map(len, answer.stdout.splitlines())) <= 100
 
 
@@ -49,7 +49,7 @@ def test_json_on_standard_output_is_all_that_is_there(block: Path, formulation: 
     assert found["certified"] is True
     assert found["formulation"] == formulation
     assert found["pressure"] == pytest.approx([3.0] * 9, rel=1e-9)  # uniform compression
-    assert found["resultant"] == pytest.approx([0.0, 120.0], rel=1e-9, abs=1e-9)  # 3 N/mm² on 40 mm
+    assert found["resultant"] == pytest.approx([0.0, 120.0], rel=1e-9, abs=1e-9)  # 3 MPa on 40 mm
 
 
 KEYS = {

@@ -9,7 +9,7 @@ import yaml
 SOLVED = """block on a table
 qp3 by Clarabel, polished; 96 degrees of freedom, 17 contact points, 0.53 s
 
-Peak pressure  3.3939 N/mm² at (40, 0) mm
+Peak pressure  3.3939 MPa at (40, 0) mm
 Residuals      penetration 1.1e-16, tension 0.0e+00
 Verdict        certified."""
 
@@ -41,7 +41,7 @@ def test_what_differs_from_machine_to_machine_agrees(old: str, new: str):
         ("1.1e-16", "1.1e-6"),
         ("0.0e+00", "1.0e-06"),
         ("certified", "local only"),
-        ("N/mm²", "N/m²"),
+        ("MPa", "N/m²"),
         ("Verdict        certified.", ""),
         ("block on a table\n", ""),
     ],
@@ -52,10 +52,10 @@ def test_what_matters_does_not_agree(old: str, new: str):
 
 
 def test_a_cut_stands_for_lines_that_are_left_out():
-    cut = "block on a table\n...\nPeak pressure  3.3939 N/mm² at (40, 0) mm\n..."
+    cut = "block on a table\n...\nPeak pressure  3.3939 MPa at (40, 0) mm\n..."
     assert pages.agrees(cut, SOLVED)
     assert not pages.agrees(cut.replace("3.3939", "3.4"), SOLVED)
-    assert not pages.agrees("Peak pressure  3.3939 N/mm² at (40, 0) mm\n...", SOLVED)  # not at the head
+    assert not pages.agrees("Peak pressure  3.3939 MPa at (40, 0) mm\n...", SOLVED)  # not at the head
     assert not pages.agrees("...\nblock on a table", SOLVED)  # not at the tail
 
 
@@ -67,7 +67,7 @@ def test_seconds_in_a_column_are_not_compared():
 
 
 def test_an_output_that_is_written_anew_keeps_its_cuts():
-    shown = "block on a table\n...\nPeak pressure  4 N/mm² at (20, 0) mm\n...\nVerdict        local only."
+    shown = "block on a table\n...\nPeak pressure  4 MPa at (20, 0) mm\n...\nVerdict        local only."
     new = pages.refreshed(shown, SOLVED)
     lines = SOLVED.splitlines()
     assert new.splitlines() == [lines[0], "...", lines[3], "...", lines[5]]

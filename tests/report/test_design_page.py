@@ -95,8 +95,8 @@ def test_a_surface_that_cannot_be_written_is_no_obstacle():
 
 
 def test_stress_and_its_limit_are_at_the_head():
-    """The limit of 95 N/mm² is kept to a millionth, where it is reached."""
+    """The limit of 95 MPa is kept to a millionth, where it is reached."""
     text = read(render(designed(), {})).text
     assert designed().von_mises == pytest.approx(95, rel=1e-6)
-    assert "Von Mises stress95 N/mm² at most, at the given points, limit 95" in text
+    assert "Von Mises stress95 MPa at most, at the given points, limit 95" in text
     assert "Von Mises stress" not in read(render(uncoupled(), {})).text

@@ -132,10 +132,10 @@ def test_the_head_has_the_force_of_each_zone_and_the_largest_stress():
     head = text[: text.index("Equations:")]
     assert re.search(r"Force of table ?6000\.0*( ± \S+)? N/mm", head)
     assert re.search(r"Force of press ?6000\.0*( ± \S+)? N/mm", head)
-    assert re.search(r"Largest von Mises stress ?88\.8\d* ± ", head)  # 100 N/mm² and ν of it across
+    assert re.search(r"Largest von Mises stress ?88\.8\d* ± ", head)  # 100 MPa and ν of it across
     assert "the same all over the body" in text
     assert "shear below table" not in text
-    assert "Material: E = 210000 N/mm², Poisson's ratio 0.3, plane strain." in text
+    assert "Material: E = 210000 MPa, Poisson's ratio 0.3, plane strain." in text
     assert "stressinfinite at corners or edges" in read(render(punched(), {}, None)).text
 
 

@@ -67,6 +67,6 @@ def test_the_page_has_each_number_with_its_error_and_no_markup_of_the_user():
     page = render(study(GOOD, UNMET), {"peak over a.b": b"<svg/>"}, "name: x")
     text = read(page).text
     assert "100 ± 1" in text
-    assert "peak [N/mm²]" in text
+    assert "peak [MPa]" in text
     assert "<b>study</b>" not in page
     assert "<b>" not in rows_in_short(study(GOOD))

@@ -61,10 +61,10 @@ def printed(renderable: RenderableType, width: int = 100) -> str:
 def test_problem_summary_states_the_facts():
     lines = printed(problem_text.problem_summary(check(block()))).splitlines()
     facts = {line[:20].strip(): line[20:].strip() for line in lines if line[18:20] == "  "}
-    assert facts["Material"] == "E = 210000 N/mm², Poisson's ratio 0.3, plane strain"
+    assert facts["Material"] == "E = 210000 MPa, Poisson's ratio 0.3, plane strain"
     assert facts["Mesh"] == "8 elements, 16 nodes, 5 contact points"
     assert facts["Degrees of freedom"] == "32"
-    assert facts["Total load"] == "(0, -120) N/mm, without reactions"  # 3 N/mm² on 40 mm
+    assert facts["Total load"] == "(0, -120) N/mm, without reactions"  # 3 MPa on 40 mm
     assert facts["Held by contact"] == "translation along (0, 1)"
     assert any(line.split() == ["left", "line", "20", "mm", "2", "u_x", "=", "0"] for line in lines)
     assert any(line.split() == ["right", "line", "20", "mm", "2", "free"] for line in lines)
@@ -73,7 +73,7 @@ def test_problem_summary_states_the_facts():
 def test_result_summary_states_the_facts(result: analysis.Result):
     answer = printed(text.result_summary(result))
     assert "foot: (0, 0) to (40, 0) mm, 40 mm long" in answer
-    assert "3.00000 ± 0.00003 N/mm² all along the contact" in answer
+    assert "3.00000 ± 0.00003 MPa all along the contact" in answer
     assert "per UNDEFORMED length" in answer
     assert "(0, 120.0000) ± 0.0012 N/mm, of the rigid surfaces on the body" in answer
     assert "Equations      unique solution proved." in answer
@@ -101,7 +101,7 @@ def test_loads_that_deflect_a_contour_are_reported():
     }}}  # fmt: skip
     answer = printed(problem_text.problem_summary(check(block().with_value("contact_zones.foot", zone))))
     assert "own contour, deflected; gap along (0, 1)" in answer
-    assert "of foot, deflected by top u_x = 0, u_y = -0.25 mm; right t_x = 3 N/mm²" in answer
+    assert "of foot, deflected by top u_x = 0, u_y = -0.25 mm; right t_x = 3 MPa" in answer
 
 
 def test_all_notes_of_a_result_are_printed(result: analysis.Result):
@@ -242,7 +242,7 @@ def test_each_case_has_a_row_with_its_own_numbers():
     for name, result in all_cases().results.items():
         peak = result.footprint.peak
         assert peak is not None
-        value, bar = lines[name].split(" N/mm²")[0].rsplit("  ", 1)[-1].split(" ± ")
+        value, bar = lines[name].split(" MPa")[0].rsplit("  ", 1)[-1].split(" ± ")
         assert abs(float(value) - peak.pressure) <= float(bar)
         assert "  not met: " in lines[name]
 

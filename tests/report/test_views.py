@@ -47,7 +47,7 @@ def test_the_frame_of_a_result_has_each_contact_point():
     np.testing.assert_array_equal(frame.pressure.to_numpy()[order], result.pressure[mine])
     np.testing.assert_array_equal(frame.gap.to_numpy()[order], result.gap[mine])
     assert frame.touching.sum() == result.touching.sum()
-    assert frame.attrs["units"]["pressure"] == "N/mm²"
+    assert frame.attrs["units"]["pressure"] == "MPa"
 
 
 def test_the_frame_of_load_cases_has_each_case():
@@ -79,7 +79,7 @@ def test_arrays_have_named_dimensions():
     result, cases, path, study = (items()[name] for name in ("result", "cases", "path", "study"))
     arrays = result.to_xarray()
     np.testing.assert_array_equal(arrays.pressure, result.pressure)
-    assert arrays.pressure.attrs["units"] == "N/mm²"
+    assert arrays.pressure.attrs["units"] == "MPa"
     by_case = cases.to_xarray()
     for name in cases.results:
         np.testing.assert_array_equal(by_case.pressure.sel(case=name), cases.results[name].pressure)
@@ -110,9 +110,9 @@ def test_results_lead_to_their_parts_and_have_units_in_their_line():
     assert result.forces is result.footprint.forces
     assert abs(result.gap[result.touching]).max() <= 1e-12 * result.contact.scales.displacement  # zero up to round-off
     assert result.peak.pressure == result.pressure.max()
-    assert repr(result).endswith("N/mm²>")
+    assert repr(result).endswith("MPa>")
     assert " ± " in repr(result)
-    assert result.units.stress == "N/mm²"
+    assert result.units.stress == "MPa"
 
 
 def test_nothing_is_imported_until_something_is_shown():

@@ -79,10 +79,10 @@ BROKEN = {
     ),
     "number with its unit": Broken(
         "young_modulus: 1e3",
-        "young_modulus: 210 GPa",
+        "young_modulus: 210 GPA",
         "4:18",
         "material.young_modulus",
-        ("'210 GPa'", "write the number alone, in the units of the file"),
+        ("unknown unit 'GPA'", "write a stress such as 210 GPa"),
     ),
     "decimal comma": Broken(
         "poisson_ratio: .3",

@@ -50,7 +50,9 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
     ],
     "Numbers": [
         ("210e3", "'210e3'"),
-        ("210e3", "210 GPa"),
+        ("210e3", "210 GPA"),
+        ("210e3", "210 mm"),
+        ("units: {length: mm, force: N}\nmaterial:\n  young_modulus: 210e3", "material:\n  young_modulus: 210 GPa"),
         ("210e3", "210,000"),
         ("210e3", "210_000"),
         ("210e3", "nan"),
@@ -109,7 +111,7 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
         ("  foot:\n    edges: bottom\n    surface:", "  edges: bottom\n  surface:"),
         (PLANE, "plane"),
         ("point: [0, 0]", "point: 0, 0"),
-        ("load_cases:", "accuracy: 1%\nload_cases:"),
+        ("load_cases:", "accuracy: 100 %\nload_cases:"),
     ],
     "Fillets, tangents and mirrors": [
         ("    - {name: left", "    - {fillet: 30}\n    - {name: left"),

@@ -329,7 +329,7 @@ def uniform_program(
 ) -> tuple[cp.Expression, cp.Expression, list[cp.Constraint]]:
     """Deviation of the pressure from its mean, gaps (n,) and constraints of all designs with one contact set.
 
-    Pressures are in 1000 N/mm² and gaps in 1e-3 mm, so that all numbers are of order one.
+    Pressures are in 1000 MPa and gaps in 1e-3 mm, so that all numbers are of order one.
     """
     p, g, a = cp.Variable(contact.size), cp.Variable(contact.size), cp.Variable(contact.rigid_motions.shape[1])
     gap = g + 1e3 * contact.offset + 1e6 * contact.compliance @ p + contact.rigid_motions @ a
@@ -348,7 +348,7 @@ def uniform_program(
 
 
 def least_deviation(contact: CondensedContact, relief: Relief, touching: np.ndarray) -> float:
-    """Least deviation in N/mm² for one contact set, by a convex program."""
+    """Least deviation in MPa for one contact set, by a convex program."""
     deviation, _, constraints = uniform_program(contact, relief, touching)
     return 1e3 * cp.Problem(cp.Minimize(deviation), constraints).solve(solver=cp.CLARABEL)
 

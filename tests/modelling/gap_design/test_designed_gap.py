@@ -129,7 +129,7 @@ def test_surfaces_that_cannot_be_written_are_refused():
 def test_a_roller_crowned_by_the_closed_form():
     """The contour of a half-plane under uniform pressure as a spline in a spec: that pressure, away from the edges.
 
-    Johnson's (2.30a) with 20 N/mm² on a = 5 mm. Its slope is infinite at the edge, where no spline follows it; within
+    Johnson's (2.30a) with 20 MPa on a = 5 mm. Its slope is infinite at the edge, where no spline follows it; within
     0.9 a the pressure is uniform to 0.1 %, which the block of 40 half-widths leaves open.
     """
     a, pressure = 5.0, 20.0

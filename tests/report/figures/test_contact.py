@@ -109,11 +109,11 @@ def test_peak_of_each_zone_is_written_with_its_unit(name: str, zones: int):
     texts = [text.get_text().split(",")[0].split() for text in drawn(result).texts if text.get_text() != "$g$"]
     peaks = [pressure[contact.zone == zone].max() for zone in range(zones)]
     assert [float(value) for value, _ in texts] == pytest.approx(peaks, rel=1e-4)  # five figures
-    assert {unit for _, unit in texts} == {"N/mm²"}
+    assert {unit for _, unit in texts} == {"MPa"}
 
 
 def test_fan_of_a_singular_pressure_is_cut_off_and_stated_to_be():
-    """At three times the mean pressure of 200 N/mm²; the mean is that of straight lines between points."""
+    """At three times the mean pressure of 200 MPa; the mean is that of straight lines between points."""
     axes = drawn(solved("gallery/flat_punch"))
     assert [text.get_text().split(",\n")[1] for text in axes.texts] == ["fan cut off"]
     rim, feet = lines(axes, VERMILION)

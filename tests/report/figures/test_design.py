@@ -29,7 +29,7 @@ def test_curves_are_those_of_the_design(design: GapDesign, tmp_path: Path):
     for line, values in zip(above.lines, curves, strict=True):
         np.testing.assert_array_equal(line.get_xydata(), np.column_stack([arc, values]))
     np.testing.assert_array_equal(below.lines[0].get_ydata(), design.profile)
-    assert above.get_ylabel() == "pressure [N/mm²]"
+    assert above.get_ylabel() == "pressure [MPa]"
     assert below.get_ylabel() == "profile [mm]"
     assert below.get_xlabel() == "distance along the contact zone [mm]"
     assert above.get_title() == "flat punch on a large block, stated mesh: peak on punch"

@@ -75,7 +75,7 @@ def test_all_panels_have_equal_limits_and_sizes(name: str, draw):
 
 
 def test_fans_are_as_long_as_their_pressures():
-    """Block between a press and a table: the largest pressures are 150, 100, 200 and 150 N/mm² by statics."""
+    """Block between a press and a table: the largest pressures are 150, 100, 200 and 150 MPa by statics."""
     figure = page_of(figure_of_contacts, "body_between_two_tools")
     lengths = [max(np.ptp(corners[:, 1]) for corners in fans(axes)) for axes in figure.axes]
     displaced = 0.02 * max(lengths)  # the feet of a fan are displaced
@@ -90,7 +90,7 @@ def test_stresses_have_one_panel_a_case_and_one_scale(name: str, measure: Stress
     figure = figure_of_stresses(cases, measure)
     *panels, bar = figure.axes
     assert [axes.get_title(loc="left").split("\n")[0] for axes in panels] == [*cases.results]
-    assert bar.get_ylabel() == f"{measure.words} [N/mm²]"
+    assert bar.get_ylabel() == f"{measure.words} [MPa]"
     drawn = [contours(axes) for axes in panels]
     for item in drawn:
         assert list(item.levels) == list(drawn[0].levels)
@@ -165,4 +165,4 @@ def test_titles_and_labels_lie_in_the_figure_and_apart(name: str, draw):
 
 def test_the_figure_of_load_cases_shows_the_stress_that_was_asked_for():
     labels = [axes.get_ylabel() for axes in figures.figure_of(solved("eccentric_punch"), StressMeasure.MAX_SHEAR).axes]
-    assert labels.count("largest shear stress [N/mm²]") == 1
+    assert labels.count("largest shear stress [MPa]") == 1

@@ -36,7 +36,7 @@ def pictures(link: ParameterPath) -> dict[str, Figure]:
 
 def test_page_has_a_picture_of_each_zone(page: Figure):
     labels = [axes.get_ylabel() for axes in page.axes]
-    assert labels == ["peak pressure [N/mm²]", "resultant [N/mm]", *(f"distance along {zone} [mm]" for zone in
+    assert labels == ["peak pressure [MPa]", "resultant [N/mm]", *(f"distance along {zone} [mm]" for zone in
                       ("drum", "table", "wall"))]  # fmt: skip
     assert page.axes[-1].get_xlabel() == "conditions.loaded.pressure"
 

@@ -45,8 +45,8 @@ def test_conditions_are_written_at_their_edges():
     problem = block_in_a_corner()
     axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
     told = {text.get_text().split("\n")[0]: text.get_text().split("\n")[1:] for text in axes.texts}
-    assert told["top"] == ["pressure 3 … 5 N/mm²"]
-    assert told["right"] == ["$t_x$ = -2 N/mm²", "$t_y$ = 0"]
+    assert told["top"] == ["pressure 3 … 5 MPa"]
+    assert told["right"] == ["$t_x$ = -2 MPa", "$t_y$ = 0"]
     assert told["left"] == ["may touch in wall"]
     assert told["hole"] == []
 
@@ -225,8 +225,8 @@ def test_the_picture_shows_the_conditions_of_the_case_that_acts():
     axes = picture(made(HELD, **HELD_CASES, **UNITS, case="wind"))
     texts = [text.get_text() for text in axes.texts]
     assert axes.get_title(loc="left") == "held block, wind"
-    assert "top\npressure 1.5 N/mm² (wind)" in texts
-    assert "right\npressure 2 N/mm²\n$t_x$ = 1 N/mm² (wind)\n$t_y$ = -2 N/mm² (wind)" in texts
+    assert "top\npressure 1.5 MPa (wind)" in texts
+    assert "right\npressure 2 MPa\n$t_x$ = 1 MPa (wind)\n$t_y$ = -2 MPa (wind)" in texts
 
 
 def test_forces_on_an_edge_add_up_in_the_picture():

@@ -36,7 +36,7 @@ def test_scale_covers_all_values_but_those_on_little_area(measure: StressMeasure
 
 
 def test_infinite_stress_is_marked_and_sets_no_scale():
-    """Below a sharp punch under a mean pressure of 200 N/mm², 5 mm wide, on a block of 200 mm: a cross at its edge."""
+    """Below a sharp punch under a mean pressure of 200 MPa, 5 mm wide, on a block of 200 mm: a cross at its edge."""
     result = bemcontact.solve(bemcontact.load(MODELS / "gallery" / "flat_punch.yaml"))
     figure, drawn = contours(result, StressMeasure.VON_MISES, window=np.array([[-5.0, -10.0], [10.0, 5.0]]))
     assert drawn.levels[-1] < 200
