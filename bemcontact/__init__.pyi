@@ -60,5 +60,6 @@ from .spec import dump as dump
 from .spec import dumps as dumps
 from .spec import load as load
 from .spec import loads as loads
+from .spec import outline as outline
 from .spec import schema as schema
 from .version import __version__ as __version__

@@ -131,7 +131,7 @@ class SizedOutline:
         yield from known
 
 
-def outline(problem: Problem) -> SizedOutline:
+def sized_outline(problem: Problem) -> SizedOutline:
     """The boundary of a problem, whatever its elements are."""
     loops = [(Loop(edges=edges), number) for number, part in enumerate(problem.parts) for edges in part.loops]
     surfaces = [zone.surface for zone in problem.zones.values()]

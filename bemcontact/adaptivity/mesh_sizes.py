@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 
 from bemcontact.adaptivity.facing_sizes import FacingStretch, ends_of_parts, facing_stretches
-from bemcontact.adaptivity.first_sizes import SizedOutline, outline, surface_sizes
+from bemcontact.adaptivity.first_sizes import SizedOutline, sized_outline, surface_sizes
 from bemcontact.adaptivity.sizes import GROWTH, SAME, Layers, Limit, Loop
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problems.geometry import MOST_ELEMENTS
@@ -58,7 +58,7 @@ class MeshSizes:
                 "on all edges and no accuracy, so that the mesh is taken as it is"
             )
             raise ProblemError(Issue(path=("boundary",), message=message))
-        shape = outline(problem)
+        shape = sized_outline(problem)
         near, corners = surface_sizes(problem, shape)
         limits: list[list[Limit]] = []
         marks: list[list[float]] = []

@@ -16,7 +16,15 @@ from bemcontact.problems.geometry import AnyEdge, Arc, Grading, LoopSpec, Mirror
 from bemcontact.problems.loop_closure import JOINT_TOLERANCE, gap_issues, other_way_round
 from bemcontact.problems.loops import loop_issues
 from bemcontact.problems.outlines import OutlineError, issue_at, mirror_image, mirrored_loop, plain_loop
-from bemcontact.problems.validation import LARGEST_STATED, Point, SpecModel, validation_error
+from bemcontact.problems.validation import (
+    LARGEST_STATED,
+    Point,
+    Positive,
+    SpecModel,
+    Text,
+    left_out,
+    validation_error,
+)
 from bemcontact.problems.wording import unknown_word
 
 RADIUS_TOLERANCE = 1e-6
@@ -41,8 +49,14 @@ class Boundary(SpecModel):
         ("hole", "bore", "inner", "inside"), "holes is a list of holes, each a list of edges, clockwise"
     )
 
-    outer: LoopSpec
+    outer: LoopSpec = left_out()
     """The edges of the outer loop, counterclockwise: the body is on the left."""
+    file: Text | None = None
+    """In place of the edges a drawing in DXF, in the folder of the problem file."""
+    layer: Text | None = None
+    """The only layer of the drawing that is read; all of them if left out."""
+    scale: Positive | None = None
+    """The factor of all coordinates of the drawing."""
     holes: tuple[LoopSpec, ...] = ()
     """The loops of edges around each hole, clockwise: the body is on the left."""
     mirror: Mirror | None = None
@@ -52,6 +66,8 @@ class Boundary(SpecModel):
     @model_validator(mode="after")
     def _encloses_a_body(self) -> Self:
         """Refuse loops that do not enclose a body; later checks rely on earlier ones."""
+        if self.outer is None:
+            raise validation_error("Boundary", [self._without_edges()])
         if issues := [*self._ill_stated()]:
             raise validation_error("Boundary", issues)
         loops = [*zip(self.loop_paths, self.loop_specs, strict=True)]
@@ -87,6 +103,13 @@ class Boundary(SpecModel):
             if not loop_issues([*self.loops[:number], joined, *self.loops[number + 1 :]], self.loop_paths):
                 return f"; or does '{loop[i].name}' run the wrong way round its center? Then give {other[1]}"
         return ""
+
+    def _without_edges(self) -> Issue:
+        """The issue of a boundary without outer edges."""
+        if self.file is None:
+            return Issue(path=("outer",), message="missing; give the edges of the outer loop, or a file")
+        message = "a drawing is read with a problem file; in Python write boundary: bemcontact.outline('part.dxf')"
+        return Issue(path=("file",), message=message)
 
     def _ill_stated(self) -> Iterator[Issue]:
         """Issues of loops that cannot be written as plain edges."""

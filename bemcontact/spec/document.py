@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from bemcontact.errors import Issue, KeyPath
@@ -45,6 +46,7 @@ class Document:
     messages : errors found while reading
     unread : paths of values that could not be read, as a message says
     change : override that made this document from another one, if any
+    folder : of the file, in which drawings are
     """
 
     data: Any
@@ -52,6 +54,7 @@ class Document:
     messages: tuple[LocatedMessage, ...] = ()
     unread: tuple[KeyPath, ...] = ()
     change: Mark | None = None
+    folder: Path = Path()
 
     def below(self, path: KeyPath) -> "Document":
         """Document of the value at a path."""
@@ -76,6 +79,7 @@ class Document:
                 *((*path, *below) for below in entry.unread),
             ),
             change=mark,
+            folder=self.folder,
         )
 
     def located(self, issue: Issue) -> LocatedMessage:

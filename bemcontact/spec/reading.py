@@ -5,6 +5,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from bemcontact.problems.problem import OF_ONE_BODY
 from bemcontact.problems.readable import readable_part
 from bemcontact.problems.wording import described, number_hint, unknown_word
 from bemcontact.spec.document import Document, LocatedMessage, Mark, Place, error_text
+from bemcontact.spec.outline_file import has_outline, with_outlines
 from bemcontact.spec.yaml_1_2 import (
     LONGEST_KEY,
     MOST_CHARACTERS,
@@ -105,11 +107,13 @@ def loads(text: str, name: str = "<string>", overrides: Changes = (), variant: s
 def as_run(text: str, name: str, overrides: Changes = (), variant: str | None = None) -> str:
     """Text of a spec after its changes, from which `loads` reads the same problem as from this text with the changes.
 
-    Without changes it is the text itself, else YAML without comments. `SpecError` if a change cannot be made.
+    Without changes it is the text itself, else YAML without comments; edges of drawings are written out. `SpecError` if
+    a change cannot be made.
     """
-    if not overrides and variant is None:
-        return text
-    return to_yaml(_stages(text, name, overrides, variant)[-1].data)
+    document = _stages(text, name, overrides, variant)[-1]
+    if has_outline(document.data):  # whose file is not beside the new one
+        return to_yaml(with_outlines(document.data, document.folder))
+    return to_yaml(document.data) if overrides or variant is not None else text
 
 
 def located(
@@ -127,8 +131,9 @@ def located(
 def readable(text: str, name: str, overrides: Changes = (), variant: str | None = None) -> Problem | None:
     """What can be read of a spec that may have mistakes, unchecked, for a picture; None without a sound boundary."""
     try:
-        return readable_part(_stages(text, name, overrides, variant)[-1].data)
-    except SpecError:
+        document = _stages(text, name, overrides, variant)[-1]
+        return readable_part(with_outlines(document.data, document.folder))
+    except (SpecError, ProblemError):
         return None
 
 
@@ -166,7 +171,7 @@ def _stages(text: str, name: str, overrides: Changes, variant: str | None) -> li
         text_of_argument("" if variant is None else variant, "the name of a variant")
     except ProblemError as error:
         raise SpecError(f"{name}: {error}") from None
-    stages = [_parsed(text, name)]
+    stages = [replace(_parsed(text, name), folder=Path(name).parent)]
     _check_mapping(stages[0], name)
     if variant is not None:
         stages += _varied(stages[0], variant)
@@ -409,7 +414,7 @@ def _problem(stages: Sequence[Document]) -> Problem:
     """Problem of the last document; `SpecError` with all issues in the order of the text."""
     document = stages[-1]
     try:
-        problem = Problem(**document.data)
+        problem = Problem(**with_outlines(document.data, document.folder))
     except ProblemError:
         raise SpecError(error_text([*document.messages, *_located_issues(stages)])) from None
     if document.messages:
@@ -431,7 +436,7 @@ def _located_issues(stages: Sequence[Document]) -> Iterator[LocatedMessage]:
 def _issues(document: Document) -> tuple[Issue, ...]:
     """Issues of the problem in a document."""
     try:
-        Problem(**document.data)
+        Problem(**with_outlines(document.data, document.folder))
     except ProblemError as error:
         return error.issues
     return ()

@@ -7,7 +7,7 @@ import pytest
 import several_bodies
 from several_bodies import elastic
 
-from bemcontact.adaptivity.first_sizes import outline, surface_sizes
+from bemcontact.adaptivity.first_sizes import sized_outline, surface_sizes
 from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.adaptivity.sizes import GROWTH
 from bemcontact.problems import Problem
@@ -61,7 +61,7 @@ def test_no_element_of_an_arc_turns_by_more_than_thirty_degrees():
 
 def test_the_thickness_of_a_strip_is_its_height():
     """Straight across: each sample of the long sides has one opposite to it; the short sides are farther."""
-    shape = outline(block(40, 2))
+    shape = sized_outline(block(40, 2))
     long = (shape.positions[0] > 5) & (shape.positions[0] < 35)
     assert shape.thickness[0][long] == pytest.approx(2.0, rel=1e-12)
 
@@ -69,7 +69,7 @@ def test_the_thickness_of_a_strip_is_its_height():
 @pytest.mark.parametrize(("inner", "outer"), [(9.0, 10.0), (5.0, 10.0)])
 def test_the_thickness_of_a_ring_is_the_difference_of_its_radii(inner: float, outer: float):
     """Up to the samples: the nearest one opposite is at most half a step φ away, which adds R r φ²/(2 t) to t."""
-    shape = outline(ring(inner, outer))
+    shape = sized_outline(ring(inner, outer))
     t = outer - inner
     for own, other in zip(shape.thickness, shape.thickness[::-1], strict=True):
         step = 2 * pi / len(other)
@@ -82,7 +82,7 @@ def test_half_of_the_radius_of_relative_curvature_where_a_surface_comes_near(rad
     """A flat face and a circle that touches it at 11: the radius of relative curvature is that of the circle."""
     circle = {"kind": "circle", "center": [11, -radius], "radius": radius, "body": "outside"}
     problem = block(40, 20, circle)
-    limits, marks = surface_sizes(problem, outline(problem))
+    limits, marks = surface_sizes(problem, sized_outline(problem))
     (limit,) = limits[0]
     assert limit.low == limit.high == pytest.approx(11, abs=1e-3)
     assert limit.size == pytest.approx(radius / 2, rel=1e-3)
@@ -113,7 +113,7 @@ def test_curvatures_of_body_and_surface_add():
             },
         }
     )
-    limits, _ = surface_sizes(problem, outline(problem))
+    limits, _ = surface_sizes(problem, sized_outline(problem))
     (limit,) = limits[0]
     assert limit.low == pytest.approx(problem.edge("foot").length / 2, abs=1e-3)
     assert limit.size == pytest.approx(15, rel=1e-2)
@@ -145,7 +145,7 @@ def test_a_least_gap_has_elements_of_the_size_of_the_radius_beside_it():
 def test_a_corner_halves_the_size():
     """A square of 8: half of an edge, and half of that at corners."""
     problem = block(8, 8)
-    shape = outline(problem)
+    shape = sized_outline(problem)
     limits = np.array([*shape.sizes(0)])
     at = shape.loops[0].size_at(shape.loops[0].joints, limits, ())
     assert (at <= 2.0).all()

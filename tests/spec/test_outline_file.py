@@ -1,0 +1,177 @@
+"""Outlines from drawings that the library of a CAD program writes; areas and lengths in closed form."""
+
+import math
+
+import ezdxf
+import numpy as np
+import pytest
+
+import bemcontact
+from bemcontact.errors import ProblemError, SpecError
+from bemcontact.problems import Boundary
+
+
+def drawing(tmp_path, draw, units=4, name="part.dxf"):
+    """A file with what `draw` adds to its model space."""
+    document = ezdxf.new(units=units)
+    draw(document.modelspace())
+    document.saveas(tmp_path / name)
+    return tmp_path / name
+
+
+def bracket(space):
+    """A block 40 x 20 with a round corner of radius 5 and a hole; pieces in any order and direction."""
+    on_layer = {"layer": "foot"}
+    space.add_line((40, 0), (0, 0), dxfattribs=on_layer)
+    space.add_line((0, 20), (0, 0))
+    space.add_arc((35, 15), 5, 0, 90)
+    space.add_line((40, 0), (40, 15 + 1e-7))
+    space.add_line((0, 20), (35, 20), dxfattribs={"layer": "top"})
+    space.add_circle((20, 10), 4, dxfattribs={"layer": "bore"})
+    space.add_text("not a part of it")
+    space.add_mtext("nor this").set_location((3, 3))
+
+
+AREA = 40 * 20 - (1 - math.pi / 4) * 25 - 16 * math.pi
+
+
+def area(boundary):
+    """Area inside the loops, by Gauss points of high order on each edge."""
+    x, weights = np.polynomial.legendre.leggauss(200)
+    total = 0.0
+    for edge in boundary.edges:
+        fractions = (x + 1) / 2
+        points, normals = edge.points(fractions), edge.normals(fractions)
+        total += edge.length / 2 * (weights @ np.sum(points * normals, axis=1)) / 2
+    return total
+
+
+def test_a_drawing_is_an_outline_with_names_of_its_layers(tmp_path):
+    boundary = Boundary(**bemcontact.outline(drawing(tmp_path, bracket)))
+    assert area(boundary) == pytest.approx(AREA, rel=1e-8)
+    assert [edge.name for edge in boundary.edges] == ["foot", "edge 1", "edge 2", "top", "edge 3", "bore"]
+    assert boundary.edges[0].start == (0, 0)
+    assert math.fsum(edge.length for edge in boundary.loops[0]) == pytest.approx(120 - 10 + 2.5 * math.pi, rel=1e-8)
+
+
+def test_polylines_with_arcs_blocks_and_mirrored_arcs_are_read(tmp_path):
+    """A slot of two half circles, in a block that is inserted at (100, 0), around an ellipse."""
+
+    def draw(space):
+        slot = space.doc.blocks.new("SLOT")
+        slot.add_lwpolyline([(0, 0, 0), (30, 0, 1), (30, 10, 0), (0, 10, 1)], format="xyb", close=True)
+        space.add_blockref("SLOT", (100, 0))
+        space.add_ellipse((115, 5), (6, 0), 0.5, 0, 2 * math.pi)
+
+    boundary = Boundary(**bemcontact.outline(drawing(tmp_path, draw)))
+    assert area(boundary) == pytest.approx(300 + 25 * math.pi - 18 * math.pi, rel=1e-9)
+
+    def lens(space):
+        space.add_arc((0, 0), 5, 0, 180)
+        space.add_arc((0, 0), 5, 0, 180, dxfattribs={"extrusion": (0, 0, -1)})  # seen from behind, the same half
+        space.add_line((5, 0), (-5, 0))
+
+    with pytest.raises(ProblemError, match=r"two pieces lie on each other at \(.*5\)"):
+        bemcontact.outline(drawing(tmp_path, lens))
+
+
+def test_a_layer_and_a_scale_are_chosen(tmp_path):
+    def draw(space):
+        bracket(space)
+        space.add_lwpolyline([(50, 0), (60, 0), (60, 10)], close=True, dxfattribs={"layer": "other"})
+
+    file = drawing(tmp_path, draw)
+    boundary = Boundary(**bemcontact.outline(file, layer="other", scale=0.1))
+    assert area(boundary) == pytest.approx(0.5, rel=1e-12)
+    assert [edge.name for edge in boundary.edges] == ["edge 1", "edge 2", "edge 3"]
+    with pytest.raises(ProblemError, match="no outline on the layer 'inner'; there are: foot, 0, top, bore, other"):
+        bemcontact.outline(file, layer="inner")
+
+
+SPEC = """
+name: bracket
+units: {length: %s, force: N}
+material: {young_modulus: 210e3, poisson_ratio: 0.3}
+boundary: {file: part.dxf%s}
+conditions: {top: {force: {y: -700}}, edge 3: {symmetry: x}}
+contact_zones: {foot: {edges: foot, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}}
+accuracy: 0.05
+"""
+
+
+def test_a_part_is_solved_without_any_coordinate_typed(tmp_path):
+    """From drawing to a certified pressure, whose resultant is the load; the page has the edges written out."""
+    drawing(tmp_path, bracket)
+    spec = tmp_path / "bracket.yaml"
+    spec.write_text(SPEC % ("mm", ""), encoding="utf-8")
+    problem = bemcontact.load(spec)
+    result = bemcontact.solve(problem)
+    assert result.holds
+    assert result.forces["foot"][1] == pytest.approx(700, rel=1e-9)
+    as_run = bemcontact.spec.as_run(spec.read_text(encoding="utf-8"), str(spec))
+    assert bemcontact.loads(as_run) == problem
+
+
+@pytest.mark.parametrize(
+    ("length", "others", "place", "words"),
+    [
+        ("m", "", "5:18", "the drawing is in mm, and the problem in m; give scale: 0.001"),
+        ("mm", ", layer: none", "5:35", "no outline on the layer 'none'"),
+        ("mm", ", scale: -1", "5:35", "scale is a number greater than 0"),
+        ("mm", ", outer: []", "5:35", "the edges are those of the file"),
+    ],
+)
+def test_mistakes_beside_a_drawing_have_their_places(tmp_path, length, others, place, words):
+    drawing(tmp_path, bracket)
+    (tmp_path / "a.yaml").write_text(SPEC % (length, others), encoding="utf-8")
+    with pytest.raises(SpecError) as refused:
+        bemcontact.load(tmp_path / "a.yaml")
+    assert f"a.yaml:{place}: boundary." in str(refused.value)
+    assert words in str(refused.value)
+
+
+def box(*pieces):
+    def draw(space):
+        for start, end in pieces:
+            space.add_line(start, end)
+
+    return draw
+
+
+SIDES = (((0, 0), (4, 0)), ((4, 0), (4, 3)), ((4, 3), (0, 3)), ((0, 3), (0, 0)))
+
+
+@pytest.mark.parametrize(
+    ("draw", "words"),
+    [
+        (
+            box(*SIDES[:3], ((0, 3), (0, 0.01))),
+            "the outline is open at (0, 0); the nearest other end is 0.01 away, at (0, 0.01)",
+        ),
+        (box(*SIDES, SIDES[1]), "two pieces lie on each other at (4, 1.5); remove one of them"),
+        (box(*SIDES, ((0, 0), (4, 3))), "3 ends meet at (0, 0)"),
+        (box(*SIDES, ((2, 2), (2, 2))), "a line without length at (2, 2)"),
+        (box(((0, 0), (4, 0)), ((4, 0), (0, 3)), ((0, 3), (4, 3)), ((4, 3), (0, 0))), "cross"),
+        (lambda space: space.add_text("nothing"), "has no lines, arcs, circles"),
+        (lambda space: space.add_spline([(0, 0), (1, 1), (2, 0)]), "an entity SPLINE on the layer '0'"),
+    ],
+)
+def test_broken_outlines_are_refused_with_the_place(tmp_path, draw, words):
+    with pytest.raises(ProblemError) as refused:
+        Boundary(**bemcontact.outline(drawing(tmp_path, draw)))
+    assert words in str(refused.value)
+
+
+def test_files_that_are_no_drawings_and_a_missing_extra_are_named(tmp_path, monkeypatch):
+    with pytest.raises(ProblemError, match="there is no such file"):
+        bemcontact.outline(tmp_path / "none.dxf")
+    (tmp_path / "text.dxf").write_text("hello", encoding="utf-8")
+    with pytest.raises(ProblemError, match="is no drawing in DXF"):
+        bemcontact.outline(tmp_path / "text.dxf")
+    with pytest.raises(ProblemError, match="scale must be greater than 0"):
+        bemcontact.outline(tmp_path / "text.dxf", scale=-1.0)
+    monkeypatch.setattr("bemcontact.spec.outline_file.find_spec", lambda name: None)
+    with pytest.raises(ProblemError, match=r"bemcontact\[cad\]"):
+        bemcontact.outline(tmp_path / "text.dxf")
+    with pytest.raises(ProblemError, match=r"boundary\.file: a drawing is read with a problem file"):
+        bemcontact.problem({"boundary": {"file": "part.dxf"}})
