@@ -23,6 +23,7 @@ from bemcontact.problems.geometry import Arc as Arc
 from bemcontact.problems.geometry import EllipseArc as EllipseArc
 from bemcontact.problems.geometry import Grading as Grading
 from bemcontact.problems.geometry import Line as Line
+from bemcontact.problems.geometry import SplineEdge as SplineEdge
 from bemcontact.problems.load_case import LoadCase as LoadCase
 from bemcontact.problems.material import Material as Material
 from bemcontact.problems.problem import MeshDensity as MeshDensity

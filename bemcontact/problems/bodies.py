@@ -18,7 +18,7 @@ from bemcontact.problems.boundary import Boundary
 from bemcontact.problems.conditions import Condition, Loads
 from bemcontact.problems.contact_zone import Names
 from bemcontact.problems.curves import Edge, Pair, unit_vector
-from bemcontact.problems.geometry import AnyEdge, Line
+from bemcontact.problems.geometry import AnyEdge, Line, SplineEdge
 from bemcontact.problems.material import Material
 from bemcontact.problems.validation import Flag, Name, Number, Point, SpecModel, invalid, left_out
 from bemcontact.problems.wording import described, unknown_word
@@ -214,7 +214,12 @@ def _placed(edge: AnyEdge, body: BodySpec) -> AnyEdge:
     for key in ("start", "end", "center"):
         if (point := getattr(edge, key, None)) is not None:
             changes[key] = _moved(point, body)
-    if not isinstance(edge, Line) and edge.angles is not None:
+    if isinstance(edge, SplineEdge):
+        changes["points"] = tuple(_moved(point, body) for point in edge.points)
+        for key in ("start_direction", "end_direction"):
+            if (direction := getattr(edge, key)) is not None:
+                changes[key] = _turned(direction, body)
+    elif not isinstance(edge, Line) and edge.angles is not None:
         if hasattr(edge, "rotation"):
             changes["rotation"] = edge.rotation + body.rotate  # pyright: ignore[reportAttributeAccessIssue]
         else:
@@ -223,6 +228,12 @@ def _placed(edge: AnyEdge, body: BodySpec) -> AnyEdge:
     if edge.grading is not None and isinstance(edge.grading.towards, tuple):
         changes["grading"] = edge.grading.model_copy(update={"towards": _moved(edge.grading.towards, body)})
     return edge.model_copy(update=changes)
+
+
+def _turned(direction: Pair, body: BodySpec) -> Pair:
+    """A direction of the original where the copy has it."""
+    (x, y), (c, s) = direction, unit_vector(body.rotate)
+    return c * x - s * y, s * x + c * y
 
 
 def _moved(point: Pair, body: BodySpec) -> Pair:

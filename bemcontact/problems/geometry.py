@@ -1,5 +1,6 @@
 """Edges as the user gives them: lines, circular arcs and elliptic arcs, each with its number of elements."""
 
+from itertools import pairwise
 from math import atan2, hypot, pi, radians
 from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
@@ -7,6 +8,7 @@ from pydantic import Field, PlainValidator, Strict, WithJsonSchema, model_valida
 
 from bemcontact.errors import Issue, KeyPath
 from bemcontact.problems.curves import CircularArc, Curve, EllipticArc, Segment, unit_vector
+from bemcontact.problems.spline_curve import SplineCurve
 from bemcontact.problems.tagged_union import TaggedUnion
 from bemcontact.problems.validation import (
     LARGEST_STATED,
@@ -26,6 +28,8 @@ from bemcontact.problems.wording import described
 
 MOST_ELEMENTS = 10_000
 """Largest number of elements of a problem; its dense matrix takes 13 gigabytes."""
+MOST_POINTS = 1000
+"""Largest number of points of a spline."""
 MOST_ENDS = 100
 """Largest number of places where elements of an edge must end that does not state its elements."""
 
@@ -294,6 +298,50 @@ class EllipseArc(_EdgeBase):
         )
 
 
+class SplineEdge(_EdgeBase):
+    """A smooth edge through points: cubic splines of the length along the chords. Closed, it is a loop of its own."""
+
+    example: ClassVar[str] = "{name: profile, kind: spline, points: [[0, 0], [5, 1], [10, 0]]}"
+
+    kind: Literal["spline"] = "spline"
+    """The shape of the edge: spline."""
+    points: Annotated[tuple[Point, ...], Field(min_length=3, max_length=MOST_POINTS)]
+    """The points [x, y] in order, with both ends; if the last is the first, the edge is a whole loop."""
+    start_direction: Point | None = None
+    """The direction of travel [x, y] at the start; if left out, the curvature is zero there."""
+    end_direction: Point | None = None
+    """The direction of travel [x, y] at the end; likewise."""
+
+    @model_validator(mode="after")
+    def _runs(self) -> Self:
+        """Refuse equal points after each other, and directions that are none."""
+        for i, (one, other) in enumerate(pairwise(self.points)):
+            if one == other:
+                issue = Issue(path=("points", i + 1), message="the point occurs twice; remove one")
+                raise validation_error("Spline", [issue])
+        for key in ("start_direction", "end_direction"):
+            if getattr(self, key) == (0.0, 0.0):
+                raise validation_error("Spline", [Issue(path=(key,), message="a direction must not be [0, 0]")])
+        if self.points[0] == self.points[-1] and len(self.points) < 4:
+            raise invalid("a closed spline needs at least three different points")
+        return self
+
+    def own_ends(self) -> tuple[Point | None, Point | None]:
+        """Both ends."""
+        return self.points[0], self.points[-1]
+
+    def has_coordinates(self) -> bool:
+        """Whether the ends are given by coordinates, not by angles."""
+        return True
+
+    def curve(self, start: Point, end: Point) -> Curve:
+        """The curve through all points."""
+        return SplineCurve(
+            points=(start, *self.points[1:-1], end), start_direction=self.start_direction,
+            end_direction=self.end_direction,
+        )  # fmt: skip
+
+
 class Fillet(_EdgeBase):
     """A rounded corner between the edges before and after it: an arc that is tangent to both, which it shortens."""
 
@@ -333,6 +381,11 @@ class Mirror(SpecModel):
         x, y = point
         return (x if self.x is None else 2 * self.x - x, y if self.y is None else 2 * self.y - y)
 
+    def direction(self, vector: Point) -> Point:
+        """The direction of travel of the image, which runs the other way."""
+        x, y = vector
+        return (x, -y) if self.x is not None else (-x, y)
+
     def distance(self, point: Point) -> float:
         """Distance [L] of a point from the line."""
         return abs(point[0] - self.x) if self.x is not None else abs(point[1] - (self.y or 0.0))
@@ -354,7 +407,7 @@ def _moved(center: Point, distance: float, direction: Point) -> Point:
     return center[0] + distance * direction[0], center[1] + distance * direction[1]
 
 
-AnyEdge = Line | Arc | EllipseArc
+AnyEdge = Line | Arc | EllipseArc | SplineEdge
 """An edge of any shape."""
 StatedEdge = AnyEdge | Fillet
 """An edge as a user states it."""

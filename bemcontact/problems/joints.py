@@ -7,7 +7,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.problems.curves import CircularArc, Curve, Edge, EllipticArc, Segment, cross
-from bemcontact.problems.geometry import AnyEdge, Arc, EllipseArc, Line
+from bemcontact.problems.geometry import AnyEdge, Arc, EllipseArc, Line, SplineEdge
 from bemcontact.problems.rigid_surface import Shape
 from bemcontact.problems.validation import Point
 
@@ -89,7 +89,7 @@ def _same_curve(one: Curve, other: Curve) -> bool:
 
 def _beginning_far(edge: AnyEdge, surfaces: Sequence[Shape], near: Point | None) -> AnyEdge:
     """A circle or an ellipse that begins where it is farthest from the surfaces; of such places at the nearest one."""
-    if isinstance(edge, Line) or edge.angles is None:
+    if isinstance(edge, Line | SplineEdge) or edge.angles is None:
         return edge
     first, last = edge.angles
 
@@ -133,7 +133,7 @@ def _as_one(group: Sequence[tuple[AnyEdge, Edge]]) -> AnyEdge:
     name = " + ".join(parts if len(parts) <= MOST_NAMED else (parts[0], "…", parts[-1]))
     if isinstance(stated, Line):
         return Line(name=name, start=first.start, end=last.end)
-    angles = [edge.angles for edge, _ in group if not isinstance(edge, Line) and edge.angles is not None]
+    angles = [edge.angles for edge, _ in group if isinstance(edge, Arc | EllipseArc) and edge.angles is not None]
     if len(angles) == len(group):
         whole = (angles[0][0], angles[0][0] + fsum(end - start for start, end in angles))
         return stated.model_copy(update={"name": name, "angles": whole})

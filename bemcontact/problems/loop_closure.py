@@ -6,7 +6,7 @@ from math import atan2, degrees, dist, hypot, pi
 from typing import Any
 
 from bemcontact.errors import Issue, KeyPath
-from bemcontact.problems.geometry import AnyEdge, Arc, Line
+from bemcontact.problems.geometry import AnyEdge, Arc, Line, SplineEdge
 from bemcontact.problems.validation import Point
 
 JOINT_TOLERANCE = 1e-9
@@ -45,7 +45,7 @@ def gap_issues(path: KeyPath, loop: Loop, size: float) -> Iterator[Issue]:
 
 def other_way_round(edge: AnyEdge) -> tuple[AnyEdge, str] | None:
     """The arc with the same ends on the other side of its center, and how to write it; None for other edges."""
-    if isinstance(edge, Line):
+    if isinstance(edge, Line | SplineEdge):
         return None
     if edge.angles is None:
         return _with(edge, clockwise=not edge.clockwise)
@@ -93,6 +93,8 @@ def _longer(paths: dict[int, tuple[int, ...]], before: Loop, here: Loop, size: f
 
 def _reversed(edge: AnyEdge) -> tuple[AnyEdge, str]:
     """An edge with its ends exchanged, and how to write it; an arc without angles still turns the same way."""
+    if isinstance(edge, SplineEdge):
+        return edge.model_copy(update={"points": edge.points[::-1]}), "its points in the other order"
     if isinstance(edge, Line) or edge.angles is None:
         return _with(edge, start=edge.end, end=edge.start)
     return _with(edge, angles=edge.angles[::-1])
@@ -196,7 +198,9 @@ def _remedy(loop: Loop, i: int) -> str:
 
 def _hint_of_radians(loop: Loop, i: int) -> str:
     """Name the edges beside a gap whose angles may be in radians: they are at most a full turn (rounded) then."""
-    angles = {edge.name: None if isinstance(edge, Line) else edge.angles for edge in (loop[i - 1], loop[i])}
+    angles = {
+        edge.name: None if isinstance(edge, Line | SplineEdge) else edge.angles for edge in (loop[i - 1], loop[i])
+    }
     suspects = [f"'{name}'" for name, given in angles.items() if given and max(map(abs, given)) <= 2.01 * pi]
     return f"; angles are in degrees, but those of {' and '.join(suspects)} may be in radians" if suspects else ""
 

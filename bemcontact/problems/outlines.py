@@ -12,7 +12,18 @@ import numpy as np
 
 from bemcontact.errors import Issue, KeyPath
 from bemcontact.problems.curves import Curve
-from bemcontact.problems.geometry import AnyEdge, Arc, Fillet, Grading, Line, Mirror, Place, StatedEdge
+from bemcontact.problems.geometry import (
+    AnyEdge,
+    Arc,
+    EllipseArc,
+    Fillet,
+    Grading,
+    Line,
+    Mirror,
+    Place,
+    SplineEdge,
+    StatedEdge,
+)
 from bemcontact.problems.validation import Point
 
 SMOOTH = 1e-9
@@ -245,7 +256,9 @@ def _fillet(
                 raise OutlineError(number, f"a fillet of radius {radius:g} is too large for '{edge.name}'", "fillet")
             lines.append((center, 0j, abs(offset)))
         else:
-            raise OutlineError(number, f"'{edge.name}' is an ellipse; only lines and arcs have fillets", "fillet")
+            raise OutlineError(
+                number, f"'{edge.name}' is an ellipse or a spline; only lines and arcs have fillets", "fillet"
+            )
     centers = [*_crossings(*lines)]
     if not centers:
         raise OutlineError(
@@ -347,9 +360,13 @@ def mirror_image(loop: Sequence[AnyEdge], mirror: Mirror) -> tuple[AnyEdge, ...]
 def _image(edge: AnyEdge, mirror: Mirror) -> AnyEdge:
     """The mirror image of an edge, which runs the other way."""
     changes: dict[str, Any] = {"name": f"{edge.name}{MIRRORED}"}
+    if isinstance(edge, SplineEdge):
+        changes["points"] = tuple(map(mirror.image, reversed(edge.points)))
+        for key, direction in (("start_direction", edge.end_direction), ("end_direction", edge.start_direction)):
+            changes[key] = None if direction is None else mirror.direction(direction)
     if isinstance(edge, Line | Arc):
         changes["start"], changes["end"] = (None if at is None else mirror.image(at) for at in (edge.end, edge.start))
-    if not isinstance(edge, Line):
+    if isinstance(edge, Arc | EllipseArc):
         changes["center"] = mirror.image(edge.center)
         if edge.angles is not None:
             turn = 180.0 if mirror.x is not None else 0.0

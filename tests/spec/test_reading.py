@@ -800,7 +800,7 @@ def test_schema_knows_contours_and_variants(old, new, path, message):
             "kind: arc",
             "kind: ark",
             "boundary.holes[0][0].kind",
-            "'ark' is not one of ['line', 'arc', 'ellipse', 'fillet']",
+            "'ark' is not one of ['line', 'arc', 'ellipse', 'spline', 'fillet']",
         ),
         ("kind: plane, ", "", "contact_zones.foot.surface", "'kind' is a required property"),
         ("normal: [0, 1]", "normal: 1", "contact_zones.foot.surface.normal", "1 is not of type 'array'"),
