@@ -24,7 +24,7 @@ ROOMS = {
     "views": (),
     "files": ("errors",),
     "problems": ("errors", "checks", "arrays", "options", "views"),
-    "spec": ("errors", "checks", "files", "problems"),
+    "spec": ("errors", "checks", "arrays", "files", "problems"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problems", "contact"),
     "formulations.local_solver": ("errors", "checks", "arrays", "blas_threads"),

@@ -52,7 +52,7 @@ class Boundary(SpecModel):
     outer: LoopSpec = left_out()
     """The edges of the outer loop, counterclockwise: the body is on the left."""
     file: Text | None = None
-    """In place of the edges a drawing in DXF, in the folder of the problem file."""
+    """In place of the edges a drawing in DXF or a list of points in CSV, in the folder of the problem file."""
     layer: Text | None = None
     """The only layer of the drawing that is read; all of them if left out."""
     scale: Positive | None = None

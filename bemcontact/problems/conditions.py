@@ -13,6 +13,9 @@ from bemcontact.arrays import Array
 from bemcontact.problems.validation import Flag, Number, Point, Positive, SpecModel, invalid, not_tiny
 from bemcontact.problems.wording import described, number_hint
 
+SPRINGS = "springs are not modeled; state the elastic foundation as a body with its modulus, and bond it to this one"
+"""What to write for springs on an edge."""
+
 
 def _ascending(table: tuple[Point, ...]) -> tuple[Point, ...]:
     """Refuse a table whose distances do not ascend, and more than two values at one distance."""
@@ -182,6 +185,7 @@ class Condition(SpecModel):
         ),
         **dict.fromkeys(("clamped", "clamp", "encastre", "support", "hold", "held"), "write fixed: true"),
         **dict.fromkeys(("hinge", "pin", "pinned"), "hold a short edge by fixed: true; no point can bear a force"),
+        **dict.fromkeys(("spring", "springs", "foundation", "stiffness"), SPRINGS),
         "free": "an edge without a condition is free; leave it out",
     }
 

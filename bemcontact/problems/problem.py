@@ -27,6 +27,7 @@ from bemcontact.problems.body_checks import (
     opposite_issues,
 )
 from bemcontact.problems.boundary import Boundary
+from bemcontact.problems.conditions import SPRINGS
 from bemcontact.problems.contact_zone import ContactZone, RigidTool, ToolAction
 from bemcontact.problems.cross_checks import (
     edge_name_issues,
@@ -136,7 +137,7 @@ class Problem(StatedBodies):
             ("force", "forces", "pressure", "traction"),
             "loads on edges are in conditions, by edge name: {top: {pressure: 20}}",
         ),
-        **dict.fromkeys(("spring", "springs", "foundation"), "springs are a condition of an edge"),
+        **dict.fromkeys(("spring", "springs", "foundation"), SPRINGS),
         **dict.fromkeys(("roller", "rollers"), "a rigid roller is a contact zone with surface: {kind: circle, …}"),
         **dict.fromkeys(("friction", "mu"), "contact is frictionless; leave it out"),
     }

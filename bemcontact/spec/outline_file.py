@@ -1,4 +1,4 @@
-"""Outlines from drawings of CAD programs in DXF: lines, arcs, circles, ellipses and polylines."""
+"""Outlines from files: drawings of CAD programs in DXF, and lists of points."""
 
 import os
 import re
@@ -14,6 +14,7 @@ from typing import Any
 from bemcontact.checks.arguments import file_path, real_number, text_of_argument
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problems.units import METERS
+from bemcontact.spec.point_list import boundary_of_points
 
 JOINED = 1e-6
 """Distance of two ends over the size of the drawing up to which they are one point: CAD programs round."""
@@ -21,6 +22,8 @@ IGNORED = ("TEXT", "MTEXT", "DIMENSION", "POINT", "HATCH", "LEADER", "MULTILEADE
 """Kinds of entities that are no outline."""
 OF_DRAWING = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 7: "km", 13: "µm", 14: "dm"}
 """Number of the unit of a drawing ($INSUNITS) -> its label."""
+POINTS = (".csv", ".txt", ".dat")
+"""Endings of files with lists of points."""
 UNNAMED = "edge"
 """Name of edges on the layer 0, before their numbers."""
 CHORDS = 32
@@ -80,20 +83,21 @@ class DrawnPiece:
 
 
 def outline(path: str | os.PathLike[str], layer: str | None = None, scale: float = 1.0) -> dict[str, Any]:
-    """Read the outline of a body from a drawing in DXF, with the extra ``cad``.
+    """Read the outline of a body from a drawing in DXF, with the extra ``cad``, or from a list of points.
 
     Parameters
     ----------
-    path : the file
-    layer : name of the only layer that is read; all of them if None
+    path : the file; one that ends in .csv, .txt or .dat has a point x, y in each line, and an empty line between loops.
+        Corners, straight pieces, arcs and smooth curves are recognized
+    layer : name of the only layer of a drawing that is read; all of them if None
     scale : factor of all coordinates
 
     Returns
     -------
     dict
         The value of ``boundary`` in a problem: ``outer`` and ``holes``. Edges have the name of their layer, with a
-        number if it has several; those of the layer 0 are called edge. Numbers run around each loop from its lowest
-        point, and start at the outer one.
+        number if it has several; those of the layer 0, and of points, are called edge. Numbers run around each loop
+        from its lowest point, and start at the outer one.
 
     Raises
     ------
@@ -105,6 +109,8 @@ def outline(path: str | os.PathLike[str], layer: str | None = None, scale: float
     if number <= 0:
         raise ProblemError(f"scale must be greater than 0; found {number:g}")
     wanted = None if layer is None else text_of_argument(layer, "the name of a layer")
+    if file.suffix.lower() in POINTS:
+        return _of_points(file, wanted, number)
     return boundary_of(drawn_pieces(_drawing(file), wanted, number), str(file))
 
 
@@ -157,6 +163,8 @@ def _read(stated: Mapping[str, Any], folder: Path, length: Any) -> dict[str, Any
         raise ProblemError(Issue(path=("layer",), message="a layer is a text; write it in quotes"))
     if scale is not None and (isinstance(scale, bool) or not isinstance(scale, int | float) or scale <= 0):
         raise ProblemError(Issue(path=("scale",), message=f"scale is a number greater than 0; found {scale!r}"))
+    if Path(stated["file"]).suffix.lower() in POINTS:
+        return {**_of_points(folder / stated["file"], layer, float(scale or 1.0)), **others}
     drawing = _drawing(folder / stated["file"])
     unit = OF_DRAWING.get(int(drawing.header.get("$INSUNITS", 0)))
     if scale is None and unit and isinstance(length, str) and length in METERS and METERS[length] != METERS[unit]:
@@ -166,6 +174,15 @@ def _read(stated: Mapping[str, Any], folder: Path, length: Any) -> dict[str, Any
         raise ProblemError(Issue(path=("file",), message=message))
     read = boundary_of(drawn_pieces(drawing, layer, float(scale or 1.0)), stated["file"])
     return {**read, **others}
+
+
+def _of_points(path: Path, layer: str | None, scale: float) -> dict[str, Any]:
+    """The boundary of a list of points, which has no layers."""
+    if layer is not None:
+        raise ProblemError(Issue(path=("layer",), message="a list of points has no layers; leave it out"))
+    if not path.is_file():
+        raise ProblemError(f"{path}: there is no such file")
+    return boundary_of_points(path, scale)
 
 
 def _drawing(path: Path) -> Any:
