@@ -148,8 +148,10 @@ class SurfaceGaps(DisplacedSurfaces):
         """
         at, held = self.outline.sampled(elements), self.held[zone]
         flat, inward = at.points.reshape(-1, 2), np.repeat(at.inward.reshape(-1, 1, 2), 2, axis=1)
-        faces = self.surfaces[zone].faces(flat, inward, np.zeros(len(flat)))
-        gap, normals, lies = (part[:, 0].reshape(at.points.shape[:-1] + part.shape[2:]) for part in faces)
+        nodes, (beside, reach) = self.outline.mesh.nodes, self.outline.sides  # which say where the body lies on a face
+        every = np.concatenate([nodes, flat]), np.concatenate([beside, inward]), np.append(reach, np.zeros(len(flat)))
+        faces = (part[len(nodes) :, 0] for part in self.surfaces[zone].faces(*every))
+        gap, normals, lies = (part.reshape(at.points.shape[:-1] + part.shape[1:]) for part in faces)
         gap[:, NODES], normals[:, NODES], lies[:, NODES] = (part[elements] for part in held)
         moved = self._displacement[elements] - self.tool_motion(zone, at.points, at.inward)
         return Faces(gap + np.sum(normals * moved, axis=-1), normals, lies)

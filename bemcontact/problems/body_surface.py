@@ -24,7 +24,7 @@ from bemcontact.problems.edge_places import (
     places_at,
 )
 from bemcontact.problems.rigid_surface import RigidSurface, Shape
-from bemcontact.problems.surface_lines import Closest, Faces, between_normals, pressed_normals, ridge_beside
+from bemcontact.problems.surface_lines import Closest, Faces, between_normals, pressed_normals, ridge_beside, sees_ridge
 from bemcontact.problems.validation import Point
 
 AT_END = 1e-9
@@ -292,8 +292,9 @@ class BodySurface:
         which, smooth = within.argmax(axis=1), straight & np.isfinite(within).any(axis=1)
         offset = points - np.array([ridge.point for ridge in ridges])[which]
         after, before = np.moveaxis(np.array([ridge.normals for ridge in ridges])[which], 1, 0)
+        seen = sees_ridge(points, feet.edge, points - offset, own[:, 1], held.normals[:, 1])
         for column in range(3):
-            there = ridge_beside(offset, own[:, column], held.normals[:, column], before, after)
+            there = ridge_beside(offset, own[:, column], held.normals[:, column], before, after, seen)
             held.put(smooth & there.counts, column, there.gap + self.offset, there.normals, there.faces)
 
     @cached_property

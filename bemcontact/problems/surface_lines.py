@@ -190,8 +190,11 @@ class Polyline(SpecModel):
         chosen = np.where(flat, distances.argmin(axis=1), within.argmax(axis=1))
         which = ridges[np.arange(len(points)), chosen]
         before, after, offset = lefts[which], lefts[which + 1], points - self.sides.corners[which + 1]
+        seen = sees_ridge(points, self._nearest(points)[0], points - offset, own[:, 1], held.normals[:, 1])
         for column in range(3):
-            pressing, gap, on, there = ridge_beside(offset, own[:, column], held.normals[:, column], before, after)
+            pressing, gap, on, there = ridge_beside(
+                offset, own[:, column], held.normals[:, column], before, after, seen
+            )
             held.put(smooth & ~flat & there, column, gap, pressing, on)
             held.put(flat, column, _dot(offset, pressing), pressing, pressing)
 
@@ -448,18 +451,36 @@ class RidgeGap(NamedTuple):
     counts: BoolArray
 
 
-def ridge_beside(offset: Array, body: Array, held: Array, before: Array, after: Array) -> RidgeGap:
+def sees_ridge(points: Array, face: IntArray, ridge: Array, body: Array, held: Array) -> BoolArray:
+    """Whether places (k,) of a body come nearer to a ridge, at (k, 2) for each, than any place that lies on their face.
+
+    Where the body is parallel to a face between a place and the ridge, it comes to lie on this face there first, as a
+    roller does on a flat one: the ridge presses on nothing behind. `face` (k,) numbers the nearest faces, `body` (k, 2)
+    are the normals into the body, and `held` (k, 2) those of the faces.
+    """
+    away, seen = np.hypot(*(points - ridge).T), np.ones(len(points), bool)
+    beside = abs(cross(points - ridge, held)) > ON_CORNER * float(np.ptp(points, axis=0).max(initial=0.0))
+    lies = beside & (_dot(held, body) >= LIES_ON)
+    for number in np.unique(face[lies]).tolist():
+        flat, own = points[lies & (face == number)], np.flatnonzero(face == number)
+        nearest = np.hypot(*np.moveaxis(flat[:, None] - ridge[own], 2, 0)).min(axis=0)
+        seen[own] = away[own] <= nearest
+    return seen
+
+
+def ridge_beside(offset: Array, body: Array, held: Array, before: Array, after: Array, seen: BoolArray) -> RidgeGap:
     """Gap along the boundary's own normals beside a convex corner.
 
     `offset` (k, 2) [L] is from the corner, `body` (k, 2) the normals into the body, `held` (k, 2) those of the nearest
     places of the surface, `before` and `after` (k, 2) those of both faces; the surface turns clockwise at the corner.
+    `seen` (k,) is that of `sees_ridge`.
     """
     normals, tilt = between_normals(body, after, before), _dot(held, body)
     along = np.stack([_dot(offset, face) / np.maximum(_dot(normals, face), STEEP) for face in (before, after)])
     gap, faces = along.max(axis=0), np.where((along[0] >= along[1])[:, None], before, after)
     opens = gap >= abs(cross(offset, body) * cross(held, body)) / 2
     inside = _dot(normals, body) >= 1 - ALIKE
-    tilted = (tilt < LIES_ON) & (_dot(normals, body) >= LIES_ON)
+    tilted = seen & (tilt < LIES_ON) & (_dot(normals, body) >= LIES_ON)
     return RidgeGap(normals, gap, faces, tilted | (inside & opens & (abs(cross(held, body)) > ALIKE)))
 
 
