@@ -170,12 +170,13 @@ def displaced_body(body: Body, by: Array) -> Body:
 
 def _taken_along(loading: Loading, particular: ParticularSolution, mesh: Mesh, moved: Mesh) -> Loading:
     """The loading with the same forces at displaced places."""
-    traction = loading.values.traction * (mesh.tributary / moved.tributary)[..., None]
+    shrunk = (mesh.tributary / moved.tributary)[..., None]
+    traction, stiffness = loading.values.traction * shrunk, loading.values.stiffness * shrunk[..., None]
     before = _moments(mesh, loading.values.traction - loading.particular.traction, mesh.center)
     after = _moments(moved, traction - particular.traction, moved.center)
     return replace(
         loading,
-        values=replace(loading.values, traction=traction),
+        values=replace(loading.values, traction=traction, stiffness=stiffness),
         particular=particular,
         true_moments=loading.true_moments + after - before,
     )

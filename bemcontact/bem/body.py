@@ -306,10 +306,7 @@ def body_of(problem: Problem) -> Body:
     added = [loading.values for loading in cases]
     points = contact_points(outline, permanent.values, deflections(problem, mesh), added)
     tools = placed_tools(problem, points)
-    motions = tuple(
-        free_rigid_motions(part.mesh, permanent.values.displacement_given[part.nodes], mesh.size / 2)
-        for part in mesh.parts
-    )
+    motions = tuple(free_rigid_motions(part.mesh, permanent.values.of_part(part), mesh.size / 2) for part in mesh.parts)
     names = tuple(f"the body '{part.name}'" for part in problem.parts) if problem.several else (BODY,)
     bonds = BondedPoints.of(problem, mesh, permanent.values)
     seen, unseen, apart = free_motions(points, motions, tools, names, bonds)

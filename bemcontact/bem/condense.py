@@ -168,8 +168,8 @@ def matrix_of(body: Body) -> tuple[object, ...]:
     values, points = body.loadings[0].values, body.points
     arrays = (
         body.mesh.nodes, body.mesh.elements, body.mesh.edge, body.mesh.part, values.displacement_given,
-        values.traction_unknown, points.node, points.normals, points.element, points.local, points.point,
-        points.sense, points.opposite.traction, *points.moved,
+        values.traction_unknown, values.stiffness, points.node, points.normals, points.element, points.local,
+        points.point, points.sense, points.opposite.traction, *points.moved,
     )  # fmt: skip
     materials = [part.material.model_dump_json() for part in body.problem.parts]
     return (*materials, *((array.shape, array.tobytes()) for array in arrays))

@@ -32,9 +32,11 @@ def turn_onto(own: System, other: System) -> Array | None:
     """Rotation (2, 2) that turns vectors x (…, 2) of a body into x @ rotation of a congruent one; None if it is none.
 
     Material, elements, prescribed axes and unit pressures are equal, up to the rounding of the coordinates of nodes.
+    There are no springs.
     """
     one, two = own.mesh, other.mesh
-    if own.material != other.material or not _arranged_alike(own, other):
+    springs = any(system.values.stiffness.any() for system in (own, other))
+    if own.material != other.material or springs or not _arranged_alike(own, other):
         return None
     from_middle = [mesh.nodes - mesh.nodes.mean(axis=0) for mesh in (one, two)]
     x, y = (nodes[:, 0] + 1j * nodes[:, 1] for nodes in from_middle)

@@ -27,7 +27,7 @@ def deflection(problem: Problem, mesh: Mesh, zone: str, surface: DeflectedContou
     part, of_part = next(pair for pair in zip(problem.parts, mesh.parts, strict=True) if pair[0].name == body)
     own = of_part.mesh
     values = _boundary_values(problem, own, surface, path)
-    motions = free_rigid_motions(own, values.displacement_given)
+    motions = free_rigid_motions(own, values)
     if len(motions):
         message = (
             f"with these conditions nothing holds the body against the {' and the '.join(motions.describe())}, for "
@@ -47,7 +47,9 @@ def _boundary_values(problem: Problem, mesh: Mesh, surface: DeflectedContour, pa
     """Spread the conditions of a contour over the mesh; issues of its own conditions get its key path."""
     conditions = problem.edge_conditions | surface.conditions
     try:
-        return boundary_values({edge: conditions[edge] for edge in mesh.edge_names if edge in conditions}, mesh)
+        return boundary_values(
+            problem, {edge: conditions[edge] for edge in mesh.edge_names if edge in conditions}, mesh
+        )
     except ProblemError as error:
         issues = [
             replace(item, path=(*path, *item.path) if own else problem.condition_path(item.path))

@@ -188,14 +188,9 @@ class Loading:
 
     def of_part(self, part: MeshPart) -> "Loading":
         """The loading of one body on its own mesh, without resultants."""
-        values, particular = self.values, self.particular
+        particular = self.particular
         return Loading(
-            values=BoundaryValues(
-                displacement_given=values.displacement_given[part.nodes],
-                displacement=values.displacement[part.nodes],
-                traction_unknown=values.traction_unknown[part.elements],
-                traction=values.traction[part.elements],
-            ),
+            values=self.values.of_part(part),
             particular=replace(
                 particular,
                 displacement=particular.displacement[part.nodes],
@@ -275,7 +270,7 @@ def _loading(problem: Problem, mesh: Mesh, conditions: Mapping[str, Condition], 
     ]
     forces, moments = zip(*resultants, strict=True)
     return Loading(
-        values=boundary_values(conditions, mesh),
+        values=boundary_values(problem, conditions, mesh),
         particular=particular_solutions(problem, mesh, loads),
         true_forces=np.array(forces),
         true_moments=np.array(moments),

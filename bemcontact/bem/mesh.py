@@ -263,12 +263,28 @@ class BoundaryValues:
     displacement : (N, 2) its value [L]
     traction_unknown : (m, 2) whether the edge of an element prescribes displacement along an axis: traction is sought
     traction : (m, 3, 2) prescribed traction [p]
+    stiffness : (m, 3, 2, 2) of springs, which add the traction -K u [p/L]
     """
 
     displacement_given: BoolArray
     displacement: Array
     traction_unknown: BoolArray
     traction: Array
+    stiffness: Array
+
+    def of_part(self, part: "MeshPart") -> "BoundaryValues":
+        """The values on one body."""
+        return BoundaryValues(
+            displacement_given=self.displacement_given[part.nodes],
+            displacement=self.displacement[part.nodes],
+            traction_unknown=self.traction_unknown[part.elements],
+            traction=self.traction[part.elements],
+            stiffness=self.stiffness[part.elements],
+        )
+
+    def of_springs(self, displacement: Array) -> Array:
+        """Traction (m, 3, 2) [p] by springs at displacements (m, 3, 2) [L] of the nodes of elements."""
+        return -np.einsum("mkij,mkj->mki", self.stiffness, displacement)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -298,14 +314,18 @@ class BoundaryState(WithHints):
     """Imbalance of the discrete equations relative to the loads; it measures the mesh."""
 
 
-def boundary_values(conditions: Mapping[str, Condition], mesh: Mesh) -> BoundaryValues:
-    """Spread conditions by edge over the mesh; `ProblemError` if two of them contradict each other at a corner."""
+def boundary_values(problem: Problem, conditions: Mapping[str, Condition], mesh: Mesh) -> BoundaryValues:
+    """Spread conditions by edge over the mesh; `ProblemError` if two of them contradict each other at a corner.
+
+    Springs have the normals of the curves, so that a circle on springs is free to spin on any mesh.
+    """
     N, m = len(mesh.nodes), len(mesh.elements)
     values = BoundaryValues(
         displacement_given=np.zeros((N, 2), bool),
         displacement=np.zeros((N, 2)),
         traction_unknown=np.zeros((m, 2), bool),
         traction=np.zeros((m, 3, 2)),
+        stiffness=np.zeros((m, 3, 2, 2)),
     )
     owner = np.full((N, 2), -1)
     largest = _largest_displacement(conditions, mesh)
@@ -326,6 +346,9 @@ def boundary_values(conditions: Mapping[str, Condition], mesh: Mesh) -> Boundary
             values.displacement_given[nodes, axis] = True
             values.traction_unknown[elements, axis] = True
             owner[nodes, axis] = index
+        if condition.spring is not None:
+            normals = problem.edge(name).normals(mesh.fractions[elements].ravel())
+            values.stiffness[elements] = condition.spring.matrices(normals.reshape(-1, 3, 2))
         if condition.presses:
             along = None
             if condition.varies_along:

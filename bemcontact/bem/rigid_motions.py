@@ -9,13 +9,16 @@ from numpy.typing import ArrayLike
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.bonds import BondedPoints, split_motions
 from bemcontact.bem.contact_points import ContactPoints
-from bemcontact.bem.mesh import Mesh
+from bemcontact.bem.mesh import BoundaryValues, Mesh
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.problems.contact_zone import RigidTool, ToolAction
 from bemcontact.problems.problem import Problem
 
 HELD = 1e-9
 """Singular value, relative to one, below which the prescribed displacements do not hold a motion."""
+
+SPRING = 1e-12
+"""Stiffness across springs, relative to that along them, that is round-off."""
 
 SIDEWAYS = 0.01
 """Component of a unit vector from which it is named."""
@@ -108,16 +111,24 @@ def all_rigid_motions(mesh: Mesh) -> RigidMotions:
     return RigidMotions(coefficients=np.eye(3), center=mesh.center, radius=mesh.size / 2)
 
 
-def free_rigid_motions(mesh: Mesh, prescribed: BoolArray, radius: float | None = None) -> RigidMotions:
-    """Find the rigid motions that move no prescribed displacement component (N, 2); translations come first.
+def free_rigid_motions(mesh: Mesh, held: BoundaryValues, radius: float | None = None) -> RigidMotions:
+    """Find the rigid motions that move no prescribed displacement component and no spring; translations come first.
 
     The radius is that of the mesh if none is given.
     """
     every = all_rigid_motions(mesh) if radius is None else replace(all_rigid_motions(mesh), radius=radius)
-    rows = every.displacement(mesh.nodes)[prescribed]
+    rows = np.vstack([every.displacement(mesh.nodes)[held.displacement_given], _stretched(every, mesh, held.stiffness)])
     values, vectors = _short_svd(rows)
     free = values <= HELD * max(1.0, values[0])
     return RigidMotions(coefficients=echelon(vectors[free]), center=every.center, radius=every.radius)
+
+
+def _stretched(motions: RigidMotions, mesh: Mesh, stiffness: Array) -> Array:
+    """Displacement (r, k) along each direction in which a place has springs, however stiff they are."""
+    places = stiffness.any(axis=(2, 3))
+    size, ways = np.linalg.eigh(stiffness[places])  # (q, 2), (q, 2, 2) with the directions in columns
+    along = np.einsum("qxi,qxk->qik", ways, motions.displacement(mesh.nodes[mesh.elements[places]]))
+    return along[size > SPRING * size[:, 1:]]
 
 
 def echelon(basis: Array) -> Array:
@@ -387,8 +398,8 @@ def free_motions(
         (body, lost), (loaded, idle) = (seen, unseen), _split(basis, np.eye(first + 3 * t)[first:][tools.free])
         both = np.vstack([body, loaded])
         together = _null_vectors(basis @ both.T)
-        apart = _null_vectors(together[: len(body)].T)
-        seen, unseen = np.vstack([echelon(apart.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
+        alone = _null_vectors(together[: len(body)].T)
+        seen, unseen = np.vstack([echelon(alone.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
     of_seen, of_unseen = (replace(every, coefficients=_counterclockwise(own)) for own in (seen, unseen))
     return of_seen, of_unseen, replace(every, coefficients=apart)
 

@@ -43,7 +43,7 @@ def symmetry_lines(problem: Problem, mesh: Mesh) -> list[SymmetryLine]:
     result = list[SymmetryLine]()
     for number, name in enumerate(mesh.edge_names):
         condition, own = problem.edge_conditions.get(name), mesh.edge == number
-        if condition is None or len(condition.displacement.given) != 1:
+        if condition is None or condition.spring or len(condition.displacement.given) != 1:
             continue
         axis = "xy".index(condition.displacement.given[0])
         normals, at = mesh.normals[own][..., axis], mesh.nodes[mesh.elements[own]][..., axis]

@@ -215,6 +215,7 @@ class System:
         """The integrals, with columns of G for unknown tractions and pressures and the sum for known ones."""
         needed: BoolArray = np.any(self.unknowns.traction >= 0, axis=(1, 2))
         needed[self.points.element] = True
+        needed |= self.values.stiffness.any(axis=(1, 2, 3))
         jacobians = self.mesh.jacobians / self.length
         return Influence(
             mesh=self.mesh,
@@ -263,8 +264,16 @@ class System:
 
     @cached_property
     def _known_traction(self) -> Array:
-        """Factor of G on the right (s, m, 3, 2): prescribed traction less that of the particular solution."""
-        return np.stack([item.values.traction - item.particular.traction for item in self.loadings]) / self.stress
+        """Factor of G on the right (s, m, 3, 2): prescribed traction less that of the particular solution.
+
+        Springs add to it at nodes with prescribed displacement.
+        """
+        mesh, springs = self.mesh, self.values.of_springs
+        known = [
+            item.values.traction + springs(item.values.displacement[mesh.elements]) - item.particular.traction
+            for item in self.loadings
+        ]
+        return np.stack(known) / self.stress
 
     @cached_property
     def _known_displacement(self) -> Array:
@@ -288,6 +297,25 @@ class System:
             factors = np.ones(len(element))
             carried.append(self._carried(element, local, columns[element, local, axis], factors, count))
         return carried
+
+    @cached_property
+    def _springs(self) -> tuple[IntArray, IntArray, IntArray, Array]:
+        """Elements, local nodes and columns (q,) of displacements with springs, and minus the tractions (q, 2) by each.
+
+        None of these displacements is prescribed.
+        """
+        K = self.values.stiffness * (self.length / self.stress)
+        columns = self.unknowns.displacement[self.mesh.elements]
+        element, local, axis = np.nonzero(K.any(axis=2) & (columns >= 0))
+        return element, local, columns[element, local, axis], K[element, local, :, axis]
+
+    @cached_property
+    def _unit_displacements(self) -> list[_Carried]:
+        """Minus the traction of springs times Jacobian along each axis for unit displacements."""
+        number, local, column, factors = self._springs
+        element = np.searchsorted(self.influence.traction_elements, number)
+        count = int((self.unknowns.displacement >= 0).sum())
+        return [self._carried(element, local, column, each, count) for each in factors.T]
 
     @cached_property
     def _unit_pressures(self) -> list[_Carried]:
@@ -328,9 +356,15 @@ class System:
 
     def _left(self, F: Sequence[Array], G: Sequence[Array]) -> Iterator[Array]:
         """Columns of the unknowns: x displacements, y displacements, tractions."""
+        first, springs = 0, None
+        if self.values.stiffness.any():
+            x, y = self._unit_displacements
+            springs = x.times(G[0]) + y.times(G[1])
         for part, column in zip(F, self.unknowns.displacement.T, strict=True):
             free = column >= 0
-            yield part if free.all() else part[free]
+            own = part if free.all() else part[free]
+            yield own if springs is None else own + springs[first : first + len(own)]
+            first += len(own)
         if self.values.traction_unknown.any():
             x, y = self._unit_tractions
             yield -(x.times(G[0]) + y.times(G[1]))
@@ -355,17 +389,28 @@ class System:
         jacobians = (self.mesh.jacobians / self.length)[..., None]
         sought, axis = np.nonzero((self.unknowns.traction >= 0).reshape(-1, 2))
         points = self.points
+        element, local, displaced, springs = self._springs
         pressed = points.traction * jacobians[points.element, points.local]
         return FlatColumns.of(
             displacement=self.unknowns.displacement,
             known=-self._known_displacement,
             known_traction=self.influence.known,
             first_known=self.size,
-            slot=np.append(sought, 3 * points.element + points.local),
-            column=np.append(
-                self.unknowns.traction.reshape(-1, 2)[sought, axis], self.size + len(self.loadings) + points.pressure
+            slot=np.concatenate([sought, 3 * points.element + points.local, 3 * element + local]),
+            column=np.concatenate(
+                [
+                    self.unknowns.traction.reshape(-1, 2)[sought, axis],
+                    self.size + len(self.loadings) + points.pressure,
+                    displaced,
+                ]
             ),
-            traction=np.append(-np.eye(2)[axis] * jacobians.reshape(-1, 1)[sought], pressed, axis=0),
+            traction=np.vstack(
+                [
+                    -np.eye(2)[axis] * jacobians.reshape(-1, 1)[sought],
+                    pressed,
+                    springs * jacobians[element, local],
+                ]
+            ),
         )
 
     @cached_property
@@ -405,6 +450,7 @@ class System:
             displacement, traction = loading.values.displacement.copy(), loading.values.traction.copy()
         sought = self.unknowns.displacement >= 0
         displacement[sought] = z[self.unknowns.displacement[sought]] * self.length
+        traction += self.values.of_springs(displacement[self.mesh.elements])
         sought = self.unknowns.traction >= 0
         traction[sought] = z[self.unknowns.traction[sought]] * self.stress
         return displacement, traction

@@ -12,6 +12,7 @@ from bemcontact.problems.conditions import Condition as Condition
 from bemcontact.problems.conditions import Field as Field
 from bemcontact.problems.conditions import Gravity as Gravity
 from bemcontact.problems.conditions import Loads as Loads
+from bemcontact.problems.conditions import Springs as Springs
 from bemcontact.problems.conditions import Temperature as Temperature
 from bemcontact.problems.contact_zone import ContactZone as ContactZone
 from bemcontact.problems.contact_zone import RigidTool as RigidTool

@@ -13,7 +13,7 @@ from bemcontact.arrays import Array
 from bemcontact.problems.validation import Flag, Number, Point, Positive, SpecModel, invalid, not_tiny
 from bemcontact.problems.wording import described, number_hint
 
-SPRINGS = "springs are not modeled; state the elastic foundation as a body with its modulus, and bond it to this one"
+SPRING = "write spring: {normal: 50}, the force per area for a displacement of one"
 """What to write for springs on an edge."""
 
 
@@ -169,6 +169,54 @@ class AxisFields(SpecModel):
         return tuple(axis for axis, field in (("x", self.x), ("y", self.y)) if field is not None)
 
 
+class Springs(SpecModel):
+    """Springs between an edge and a fixed place, spread evenly over it: an elastic foundation (Winkler).
+
+    Stiffness is force per area and displacement. Those that are given are added.
+    """
+
+    example: ClassVar[str] = "{normal: 50}"
+    other_words: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(("stiffness", "k", "kn"), "write normal: 50 for springs across the edge, or tangent, x or y"),
+        **dict.fromkeys(("tangential", "shear", "kt"), "write tangent"),
+    }
+
+    normal: Positive | None = None
+    """The stiffness across the edge: force per area for a displacement of one. The springs pull as well as push."""
+    tangent: Positive | None = None
+    """The stiffness along the edge."""
+    x: Positive | None = None
+    """The stiffness along x."""
+    y: Positive | None = None
+    """The stiffness along y."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _number(cls, data: Any) -> Any:
+        """Refuse a stiffness without a direction."""
+        if isinstance(data, int | float) and not isinstance(data, bool):
+            raise invalid(f"a spring has a direction; write {{normal: {data:g}}}, or tangent, x or y")
+        return data
+
+    @model_validator(mode="after")
+    def _not_empty(self) -> Self:
+        """Refuse springs without a stiffness."""
+        if not self.given:
+            raise invalid("the springs have no stiffness; give normal, tangent, x or y, or leave them out")
+        return self
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """The directions in which there are springs."""
+        return tuple(way for way in ("normal", "tangent", "x", "y") if getattr(self, way) is not None)
+
+    def matrices(self, normals: Array) -> Array:
+        """Stiffness (…, 2, 2) [p/L] at places with unit normals (…, 2)."""
+        n, t = normals, np.stack([-normals[..., 1], normals[..., 0]], axis=-1)
+        across, along = (np.einsum("...i,...j->...ij", way, way) for way in (n, t))
+        return (self.normal or 0.0) * across + (self.tangent or 0.0) * along + np.diag([self.x or 0.0, self.y or 0.0])
+
+
 class Condition(SpecModel):
     """The condition on an edge. Along an axis without a condition, the edge is free of traction."""
 
@@ -185,7 +233,7 @@ class Condition(SpecModel):
         ),
         **dict.fromkeys(("clamped", "clamp", "encastre", "support", "hold", "held"), "write fixed: true"),
         **dict.fromkeys(("hinge", "pin", "pinned"), "hold a short edge by fixed: true; no point can bear a force"),
-        **dict.fromkeys(("spring", "springs", "foundation", "stiffness"), SPRINGS),
+        **dict.fromkeys(("springs", "foundation", "stiffness", "winkler", "bedding"), SPRING),
         "free": "an edge without a condition is free; leave it out",
     }
 
@@ -197,6 +245,8 @@ class Condition(SpecModel):
     """The prescribed pressure on the edge, positive in compression."""
     force: Annotated[tuple[EdgeForce, ...], BeforeValidator(_forces)] = ()
     """The force per thickness on the edge or on a part of it: one, or a list of them, which are added."""
+    spring: Springs | None = None
+    """The springs between the edge and a fixed place, an elastic foundation."""
     fixed: Flag | None = None
     """Short for displacement: {x: 0, y: 0}."""
     symmetry: Literal["x", "y"] | None = None
@@ -239,11 +289,31 @@ class Condition(SpecModel):
         for axis in displacement:
             if axis in traction:
                 raise invalid(f"both displacement and traction are given along {axis}; give only one of them")
-        if self.pressure is None and not displacement and not traction and not self.force:
+        if clash := self._against_springs(displacement):
+            raise invalid(clash)
+        if not (displacement or self.presses or self.spring):
             raise invalid(
-                "the condition is empty; give displacement, traction, pressure or force, or leave the edge out"
+                "the condition is empty; give displacement, traction, pressure, force or spring, or leave the edge out"
             )
         return self
+
+    def _against_springs(self, displacement: Sequence[str]) -> str:
+        """What to change if there are springs where displacement is prescribed along some axes."""
+        if self.spring is None or not displacement:
+            return ""
+        for way in self.spring.given:
+            if way in displacement:
+                return f"both displacement and spring are given along {way}; give only one of them"
+            if way in ("normal", "tangent"):
+                return (
+                    f"spring.{way} needs an edge without a prescribed displacement; write spring: {{x: …}} or {{y: …}}"
+                )
+        return ""
+
+    @property
+    def holds(self) -> bool:
+        """Whether it prescribes a displacement, or has springs."""
+        return bool(self.displacement.given) or self.spring is not None
 
     @property
     def presses(self) -> bool:

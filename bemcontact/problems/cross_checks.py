@@ -139,6 +139,9 @@ def _condition_issues(item: RawValue, base: Condition | None) -> Iterator[Issue]
     condition = item.read(Condition)
     if condition is None:
         return
+    if condition.spring is not None:
+        message = "a load case cannot add springs; put them into the conditions of the problem"
+        yield Issue(path=(*item.path, "spring"), message=message)
     held = base.displacement.given if base else ()
     for axis in condition.displacement.given:
         if axis not in held:

@@ -27,7 +27,7 @@ from bemcontact.problems.body_checks import (
     opposite_issues,
 )
 from bemcontact.problems.boundary import Boundary
-from bemcontact.problems.conditions import SPRINGS
+from bemcontact.problems.conditions import SPRING
 from bemcontact.problems.contact_zone import ContactZone, RigidTool, ToolAction
 from bemcontact.problems.cross_checks import (
     edge_name_issues,
@@ -137,7 +137,10 @@ class Problem(StatedBodies):
             ("force", "forces", "pressure", "traction"),
             "loads on edges are in conditions, by edge name: {top: {pressure: 20}}",
         ),
-        **dict.fromkeys(("spring", "springs", "foundation"), SPRINGS),
+        **dict.fromkeys(
+            ("spring", "springs", "foundation"),
+            f"springs on an edge are a condition of it, by edge name: {SPRING}",
+        ),
         **dict.fromkeys(("roller", "rollers"), "a rigid roller is a contact zone with surface: {kind: circle, …}"),
         **dict.fromkeys(("friction", "mu"), "contact is frictionless; leave it out"),
     }

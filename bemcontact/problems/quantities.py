@@ -30,6 +30,7 @@ LENGTH = Dimension(1, 0, name="a length", example="5 mm")
 STRESS = Dimension(-2, 1, name="a stress", example="210 GPa")
 LINE_FORCE = Dimension(-1, 1, name="a force per thickness", example="400 N/mm")
 LINE_MOMENT = Dimension(0, 1, name="a moment per thickness", example="20 N*mm/mm")
+FOUNDATION = Dimension(-3, 1, name="a stiffness per area", example="50 N/mm^3")
 DENSITY = Dimension(-4, 1, 2, name="a density", example="7850 kg/m^3")
 ACCELERATION = Dimension(1, 0, -2, name="an acceleration", example="9.81 m/s^2")
 ANGULAR_VELOCITY = Dimension(0, 0, -1, name="an angular velocity", example="3000 rpm")
@@ -50,7 +51,7 @@ KEYS: Mapping[str, Dimension] = {
 }  # fmt: skip
 """Key -> dimension of its value, or of the numbers in it."""
 OF_PARENT: Mapping[str, Dimension] = {
-    "displacement": LENGTH, "traction": STRESS, "force": LINE_FORCE, "mirror": LENGTH
+    "displacement": LENGTH, "traction": STRESS, "force": LINE_FORCE, "mirror": LENGTH, "spring": FOUNDATION
 }  # fmt: skip
 """Key -> dimension of x and y below it."""
 OF_REFERENCE: Mapping[str, Dimension] = {
@@ -84,7 +85,7 @@ def dimension_of(path: KeyPath) -> Dimension | None:
         return RADIANS if parent == "displacement" else DEGREES
     if key in POWERS and (base := _of_field(words[:-1])):
         return base._replace(length=base.length - POWERS[key], name=base.name if not POWERS[key] else "a slope")
-    if key in ("x", "y"):
+    if key in ("x", "y") or parent == "spring":
         return OF_PARENT.get(parent)
     return KEYS.get(key)
 

@@ -251,7 +251,7 @@ class StatedBodies(SpecModel, Drawn):
         contacts, bonds = ([*pairs] for pairs in ((c.between for c in self.contacts.values()), self.bonded.values()))
         sides = [side for pair in contacts for side in pair if _body_in(side) == body]
         bonded = any(_body_in(side) == body for pair in bonds for side in pair)
-        held = any(condition.displacement.given for condition in self.bodies[body].conditions.values())
+        held = any(condition.holds for condition in self.bodies[body].conditions.values())
         held |= any(
             condition.displacement.given and self.part_of(edge) == body
             for case in self.load_cases.values()

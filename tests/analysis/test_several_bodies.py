@@ -18,6 +18,8 @@ from bemcontact.report.facts import facts
 from bemcontact.report.result_page import render
 from bemcontact.report.zones import largest_stresses_csv
 
+FLAT = {"kind": "plane", "point": [0, 2], "normal": [0, -1]}
+ROUND = {"kind": "circle", "center": [4, 12], "radius": 10, "body": "outside"}
 PRESSED = {"top": {"pressure": 5.0}}
 
 
@@ -663,6 +665,47 @@ def test_bonded_bodies_have_one_point_where_their_joint_meets_another_body(order
     joint = ~(by_zone(one)[1] - (1, 0)).any(axis=1)
     assert joint.sum() == 2
     assert len({*by_zone(one)[2][joint]}) == 1
+
+
+@pytest.mark.parametrize("surface", [FLAT, ROUND])
+def test_bonded_bodies_under_a_loaded_tool_are_one_body(surface):
+    """Nothing but contact holds them: the tool, and both bodies together, move freely."""
+    floor = {"kind": "plane", "point": [0, -2], "normal": [0, 1]}
+
+    def sunk(top, bottom, **spec):
+        zones = {"ram": {"edges": top, "surface": surface}, "floor": {"edges": bottom, "surface": floor}}
+        tools = {"ram": {"zones": "ram", "force": {"y": -40.0}}}
+        result = bemcontact.solve(stated(name="bonded", contact_zones=zones, tools=tools, accuracy=0.003, **spec))
+        assert result.certified
+        return result.solution.pressure.max(), result.to_dict()["tools"][0]["displacement"][1]
+
+    halves = {"up": elastic(block((0, 8), (0, 2))), "low": elastic(block((0, 8), (-2, 0)))}
+    two = sunk("up/top", "low/bottom", bodies=halves, bonded={"glue": ["up/bottom", "low/top"]})
+    np.testing.assert_allclose(two, sunk("top", "bottom", **elastic(block((0, 8), (-2, 2)))), rtol=0.003)
+
+
+def test_springs_are_the_limit_of_a_thin_layer():
+    """A bonded layer of E = k t and ν = 0 has the stiffness k across and k/2 along: the rest falls with t."""
+    k, own, zone = 100.0, elastic(block((0, 8), (0, 2))), {"surface": {**ROUND, "center": [4, 102], "radius": 100}}
+
+    def sunk(spec, edge):
+        tools = {"ram": {"zones": "ram", "force": {"y": -4.0}}}
+        zones = {"ram": {"edges": edge, **zone}}
+        result = bemcontact.solve(stated(name="layer", contact_zones=zones, tools=tools, accuracy=0.003, **spec))
+        assert result.certified
+        return np.array([result.to_dict()["tools"][0]["displacement"][1], result.solution.pressure.max()])
+
+    springs = sunk({**own, "conditions": {"bottom": {"spring": {"normal": k, "tangent": k / 2}}}}, "top")
+    rest = []
+    for t in (0.4, 0.2):
+        layer = {**elastic(block((0, 8), (-t, 0)), HELD), "material": {"young_modulus": k * t, "poisson_ratio": 0.0}}
+        bodies = {"up": own, "layer": layer}
+        rest.append(sunk({"bodies": bodies, "bonded": {"glue": ["up/bottom", "layer/top"]}}, "up/top") / springs - 1)
+    rest = np.abs(rest)
+    assert (rest[0] < 0.02).all()
+    ratios = rest[:-1] / rest[1:]
+    assert (ratios > 1.8).all(), rest
+    assert (ratios < 2.5).all(), rest
 
 
 def test_bonded_bodies_on_a_rigid_one_are_one_body():

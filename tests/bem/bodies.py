@@ -79,6 +79,7 @@ def values_of(
         displacement=np.where(given, displacement(mesh.nodes), 0),
         traction_unknown=unknown,
         traction=np.where(unknown[:, None, :], 0, t),
+        stiffness=np.zeros((*t.shape, 2)),
     )
 
 
@@ -95,7 +96,7 @@ def solved(
     mesh: Mesh, material: Material, values: BoundaryValues, loads: Loads | None = None
 ) -> tuple[np.ndarray, np.ndarray, System]:
     """Displacement (N, 2) and traction (m, 3, 2) of a body without contact, and its system."""
-    motions = free_rigid_motions(mesh, values.displacement_given)
+    motions = free_rigid_motions(mesh, values)
     system = system_of(mesh, material, values, motions, loads)
     displacement, traction = system.fields(solve_system(system).combined(np.ones(1)), system.loadings[0])
     return displacement, traction, system

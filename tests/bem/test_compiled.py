@@ -63,7 +63,7 @@ def of_body(loops, fixed):
     """A body under constant stress, on whose edges in `fixed` displacement is prescribed."""
     mesh = mesh_of(*loops)
     values = values_of(mesh, fixed, displacement, traction)
-    return system_of(mesh, MATERIAL, values, free_rigid_motions(mesh, values.displacement_given))
+    return system_of(mesh, MATERIAL, values, free_rigid_motions(mesh, values))
 
 
 def of_model(name, refine=1):

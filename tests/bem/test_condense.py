@@ -10,6 +10,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.problems import Problem
 
 PLANE = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+CIRCLE = {"kind": "arc", "center": [0, 0]}
 WALL = {"kind": "plane", "point": [0, 0], "normal": [1, 0]}
 
 
@@ -356,3 +357,64 @@ def test_short_elements_of_a_turned_body_keep_their_digits():
     assert len(straight) == len(turned) == 17
     assert np.abs(straight).min() > 1
     assert np.ptp(turned - straight) < 100 * np.finfo(float).eps
+
+
+def on_bed(spring, force, **more):
+    """A block of 4 x 2 on springs at its bottom, under a flat plate with a force."""
+    plate = {"kind": "plane", "point": [0, 2], "normal": [0, -1]}
+    tools = {"plate": {"zones": "plate", "force": {"y": -force}}}
+    return block({"bottom": {"spring": spring}, **more}, {"plate": (["top"], plate)}, 4.0, 2.0, tools=tools)
+
+
+def test_a_block_on_springs_under_a_plate_sinks_by_springs_and_compression():
+    """p/k + (1-ν²) p h/E; springs across the bottom leave it free to slide along it."""
+    result = solve(on_bed({"normal": 50.0}, 40.0))
+    np.testing.assert_allclose(result.solution.pressure, 10.0, rtol=1e-11)
+    (plate,) = result.to_dict()["tools"]
+    np.testing.assert_allclose(plate["displacement"], [0, -(10 / 50 + 0.91 * 10 * 2 / 1000)], rtol=1e-11)
+    assert any("translation along (1, 0) moves no contact point" in note for note in result.notes)
+    held = [solve(on_bed(spring, 40.0)) for spring in ({"y": 50.0, "x": 1e-6}, {"normal": 50.0, "tangent": 1e-6})]
+    for one in held:
+        np.testing.assert_allclose(one.solution.pressure, 10.0, rtol=1e-8)  # they hold the body, by hardly a force
+        assert not one.notes
+
+
+def test_stiff_springs_hold_as_a_fixed_edge_does():
+    """The difference falls as one over the stiffness."""
+
+    def sunk(condition):
+        plate = {"kind": "circle", "center": [2, 12], "radius": 10, "body": "outside"}
+        tools = {"plate": {"zones": "plate", "force": {"y": -4.0}}}
+        zones = {"plate": (["top"], plate)}
+        result = solve(block({"bottom": condition}, zones, 4.0, 2.0, 16, 8, tools=tools, accuracy=None))
+        return result.solution.pressure.max(), result.to_dict()["tools"][0]["displacement"][1]
+
+    fixed = np.array(sunk({"fixed": True}))
+    one, other = (np.array(sunk({"spring": {"x": k, "y": k}})) - fixed for k in (1e6, 1e7))
+    np.testing.assert_allclose(one / other, 10, rtol=0.01)
+    assert (abs(other) < 1e-4 * abs(fixed)).all()
+
+
+@pytest.mark.parametrize("stiffness", [1e-3, 1.0, 100.0, 1e6])
+def test_a_ring_on_springs_has_the_pressure_of_lame(stiffness):
+    """U = A r + B/r with u = δ at the pin and σ = -k u outside: order four, on any stiffness; the ring may spin."""
+    G, nu, inner, outer, interference = 1000 / 2.6, 0.3, 1.0, 2.0, 0.01
+    radial = 2 * G * np.array([[1 / (1 - 2 * nu), -1 / inner**2], [1 / (1 - 2 * nu), -1 / outer**2]])
+    rows = [[inner, 1 / inner], radial[1] + stiffness * np.array([outer, 1 / outer])]
+    pressure = -radial[0] @ np.linalg.solve(rows, [interference, 0])
+    errors = []
+    for n in (8, 16, 32):
+        pin = {"kind": "circle", "center": [0, 0], "radius": inner + interference, "body": "outside"}
+        result = solve(Problem.model_validate({
+            "name": "ring", "material": {"young_modulus": 1000, "poisson_ratio": nu}, "accuracy": None,
+            "boundary": {
+                "outer": [{"name": "out", **CIRCLE, "radius": outer, "angles": [0, 360], "elements": n}],
+                "holes": [[{"name": "bore", **CIRCLE, "radius": inner, "angles": [360, 0], "elements": n}]],
+            },
+            "conditions": {"out": {"spring": {"normal": stiffness}}},
+            "contact_zones": {"pin": {"edges": "bore", "surface": pin}},
+        }))  # fmt: skip
+        assert result.certified
+        assert any("rotation counterclockwise about (0, 0) moves no contact" in note for note in result.notes)
+        errors.append(abs(result.solution.pressure - pressure).max() / pressure)
+    assert np.log2(errors[0] / errors[-1]) / 2 > 3.8, errors

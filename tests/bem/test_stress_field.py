@@ -33,7 +33,7 @@ def field_of(body: Problem) -> StressField:
     """The solution without contact."""
     mesh = build(body)
     loading = permanent_loading(body, mesh)
-    motions = free_rigid_motions(mesh, loading.values.displacement_given)
+    motions = free_rigid_motions(mesh, loading.values)
     system = System(mesh=mesh, material=body.material, points=UnitPressures.none(), motions=motions, loadings=[loading])
     u, t = system.fields(solve_system(system).combined(np.ones(1)), loading)
     return StressField.of(

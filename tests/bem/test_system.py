@@ -1,5 +1,6 @@
 """Fields that the elements represent exactly; answers that do not depend on axes and units."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bemcontact.analysis.solve import solve as solve_problem
-from bemcontact.bem.rigid_motions import RigidMotions
+from bemcontact.bem.mesh import BoundaryValues, Mesh
+from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
 from bemcontact.bem.solution import solve_system
 from bemcontact.problems import Problem
 from bemcontact.problems.material import Material
@@ -54,6 +56,33 @@ def errors(loops, fixed, gradient_scale=1.0):
 def test_constant_stress_is_exact(name, conditions):
     """Interpolating t·J, the method reproduces constant stress on straight and curved elements to round-off."""
     assert max(errors(MESHES[name], FIXED[conditions])) < 1e-12
+
+
+def on_springs(values: BoundaryValues, u: np.ndarray, mesh: Mesh) -> BoundaryValues:
+    """Springs between all axes on elements without a prescribed displacement, and the load that balances them."""
+    free = ~values.traction_unknown.any(axis=1)[:, None, None, None]
+    one, other = np.random.default_rng(3).normal(size=(2, *mesh.elements.shape, 2))
+    spread = np.einsum("...i,...j->...ij", one, one) + np.einsum("...i,...j->...ij", other, other)
+    K = np.where(free, 500 * spread, 0.0)
+    return replace(values, stiffness=K, traction=values.traction + np.einsum("mkij,mkj->mki", K, u[mesh.elements]))
+
+
+@pytest.mark.parametrize("by_numba", [False, True])
+@pytest.mark.parametrize("conditions", ["traction", "one edge clamped", "clamp beside roller", "rollers"])
+@pytest.mark.parametrize("name", MESHES)
+def test_constant_stress_on_springs_is_exact(name, conditions, by_numba):
+    """T = σ n + K u - K u: springs that differ from node to node, also beside nodes with a prescribed displacement."""
+    mesh = mesh_of(*MESHES[name])
+    exact = displacement(mesh.nodes)
+    values = on_springs(values_of(mesh, FIXED[conditions](mesh.edge_names), displacement, traction), exact, mesh)
+    motions = free_rigid_motions(mesh, values)
+    assert len(motions) == 0 or not values.stiffness.any()
+    system = replace(system_of(mesh, MATERIAL, values, motions), by_numba=by_numba)
+    u, t = system.fields(solve_system(system).combined(np.ones(1)), system.loadings[0])
+    moved = u - exact if not len(motions) else without_rigid_motion(mesh, u - exact)
+    assert abs(moved).max() < 1e-11 * abs(exact).max()
+    dt = t - traction(mesh.nodes[mesh.elements], mesh.normals)
+    assert np.sqrt(np.sum(mesh.tributary[..., None] * dt**2) / np.sum(mesh.tributary)) < 1e-11 * abs(STRESS).max()
 
 
 @pytest.mark.parametrize("conditions", FIXED)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bemcontact.errors import ProblemError
-from bemcontact.problems import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
+from bemcontact.problems import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Springs, Temperature
 from bemcontact.problems.conditions import Along
 
 NUMBER = st.floats(-100, 100)
@@ -61,12 +61,39 @@ def test_displacement_along_one_axis_goes_with_traction_along_the_other():
         ({"pressure": {"along": [[3, 1], [2, 1]]}}, "must ascend; 2 stands after 3"),
         ({"pressure": {"along": [[1, 1], [1, 2], [1, 3]]}}, "more than two values at the distance 1"),
         ({"displacement": {"x": {"along": [[0, 1], [2, 1]]}}}, "along is for loads"),
+        ({"spring": {}}, "spring: the springs have no stiffness"),
+        ({"spring": 50}, "spring: a spring has a direction; write {normal: 50}"),
+        ({"spring": {"normal": -1}}, "spring.normal: must be greater than 0"),
+        ({"spring": {"k": 1}}, "write normal: 50 for springs across the edge"),
+        ({"spring": {"x": 1}, "displacement": {"x": 0}}, "both displacement and spring are given along x"),
+        ({"spring": {"normal": 1}, "displacement": {"x": 0}}, "spring.normal needs an edge without"),
+        ({"spring": {"tangent": 1}, "fixed": True}, "spring.tangent needs an edge without"),
     ],
 )
 def test_contradictory_and_empty_conditions_are_refused(keys, words):
     with pytest.raises(ProblemError) as caught:
         Condition(**keys)
     assert words in str(caught.value)
+
+
+def test_springs_pull_along_their_directions():
+    """On a face with the normal (0.6, 0.8): stiffness across it, along it, and along the axes, added."""
+    n, t = np.array([0.6, 0.8]), np.array([-0.8, 0.6])
+    across, along, axes = (
+        Springs(**keys).matrices(n[None])[0] for keys in ({"normal": 3}, {"tangent": 2}, {"x": 5, "y": 7})
+    )
+    np.testing.assert_allclose(np.column_stack([across @ n, across @ t]), np.column_stack([3 * n, 0 * t]), atol=1e-15)
+    np.testing.assert_allclose(np.column_stack([along @ n, along @ t]), np.column_stack([0 * n, 2 * t]), atol=1e-15)
+    np.testing.assert_array_equal(axes, np.diag([5, 7]))
+    every = Springs(normal=3, tangent=2, x=5, y=7).matrices(n)
+    np.testing.assert_allclose(every, across + along + axes, rtol=1e-15)
+
+
+def test_springs_go_with_loads_and_with_displacement_along_the_other_axis():
+    assert Condition(spring={"y": 1}, displacement={"x": 0}).holds
+    assert Condition(spring={"normal": 1}, pressure=2).presses
+    assert not Condition(spring={"normal": 1}).presses
+    assert not Condition(pressure=2).holds
 
 
 def test_fixed_and_symmetry_are_displacements():

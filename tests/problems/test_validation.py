@@ -28,7 +28,7 @@ def test_every_key_of_the_schema_is_found_where_its_mapping_has_it():
     ("word", "words"),
     [
         ("load", "is force: {x: …"), ("roller", r"displacement: \{y: 0\}"), ("clamped", "write fixed: true"),
-        ("hinge", "no point can bear a force"), ("free", "leave it out"), ("spring", "springs are not modeled"),
+        ("hinge", "no point can bear a force"), ("free", "leave it out"), ("springs", r"write spring: \{normal: 50\}"),
     ],
 )  # fmt: skip
 def test_words_of_others_for_a_condition_are_led_to_its_keys(word: str, words: str):
@@ -41,7 +41,7 @@ def test_words_of_others_for_a_condition_are_led_to_its_keys(word: str, words: s
     [
         ("thickness", "forces are per thickness"), ("E", "belongs to material"), ("friction", "frictionless"),
         ("supports", "in conditions, by edge name"), ("forces", "loads on edges are in conditions"),
-        ("rollers", "kind: circle"), ("foundation", "springs are not modeled"),
+        ("rollers", "kind: circle"), ("foundation", "are a condition of it"),
     ],
 )  # fmt: skip
 def test_words_of_others_at_the_top_are_led_to_their_places(word: str, words: str):

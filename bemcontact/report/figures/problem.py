@@ -28,7 +28,7 @@ from bemcontact.problems import (
     Problem,
     Spline,
 )
-from bemcontact.problems.conditions import Along
+from bemcontact.problems.conditions import Along, Springs
 from bemcontact.report.figures.page import (
     BLACK,
     BLUE,
@@ -49,6 +49,7 @@ from bemcontact.report.figures.symbols import (
     draw_arrows,
     draw_ground,
     draw_rollers,
+    draw_springs,
     joined,
     place_arrow,
     place_names,
@@ -129,7 +130,7 @@ def role(problem: Problem, edge: str) -> str:
     conditions = [condition for _, condition in _acting(problem, edge)]
     if not conditions:
         return "free"
-    return "held" if any(condition.displacement.given for condition in conditions) else "loaded"
+    return "held" if any(condition.holds for condition in conditions) else "loaded"
 
 
 def _acting(problem: Problem, edge: str) -> Iterator[tuple[float, Condition]]:
@@ -247,10 +248,16 @@ def _loaded(problem: Problem, edge: Edge) -> Array:
 
 
 def draw_supports(axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like) -> Iterator[Array]:
-    """Draw a clamp as ground and one held axis as rollers that point along it, displaced; yield what they cover."""
+    """Draw a clamp as ground, one held axis as rollers that point along it, and springs, displaced.
+
+    Yield what they cover.
+    """
     size = problem.size
     for edge in problem.edges:
-        held = problem.edge_conditions.get(edge.name, FREE).displacement
+        condition = problem.edge_conditions.get(edge.name, FREE)
+        held = condition.displacement
+        if condition.spring is not None:
+            yield from _draw_springs(axes, edge, condition.spring, displacement, size)
         if len(held.given) == 2:
             fractions = np.linspace(0, 1, 61)
             points = edge.points(fractions)
@@ -263,6 +270,20 @@ def draw_supports(axes: Axes, problem: Problem, displacement: Displacement = np.
             away = np.zeros_like(normals)
             away[:, column] = np.where(normals[:, column] > -0.01, 1.0, -1.0)
             yield draw_rollers(axes, points + displacement(points), away, 0.02 * size, BLUE)
+
+
+def _draw_springs(axes: Axes, edge: Edge, springs: Springs, displacement: Displacement, size: float) -> Iterator[Array]:
+    """Draw springs that point out of the body, and those along an edge beside it."""
+    fractions = _spread(edge, size, 8)
+    points, normals = edge.points(fractions), edge.normals(fractions)
+    tangents = np.column_stack([-normals[:, 1], normals[:, 0]])
+    x, y = np.broadcast_to(np.eye(2)[:, None], (2, *normals.shape))
+    ways = {"normal": normals, "tangent": tangents, "x": x, "y": y}
+    for way in (ways[name] for name in springs.given):
+        outward = np.sum(way * normals, axis=1, keepdims=True)
+        beside = np.where(abs(outward) < 0.3, size * (0.024 * normals + 0.02 * way), 0.0)
+        away = np.where(outward < 0, -way, way)
+        yield draw_springs(axes, points + displacement(points) + beside, away, 0.045 * size, BLUE)
 
 
 def draw_loads(axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like) -> Iterator[Array]:

@@ -16,6 +16,10 @@ from bemcontact.report.figures.page import add_path, without_glyph_warnings
 
 SYMBOL_REACH = 18.0
 """Half the length of a symbolic arrow, in pixels of the page."""
+COIL = np.column_stack([
+    [0, 0.12, 0.2, 0.36, 0.52, 0.68, 0.76, 0.88], [0, 0, 0.22, -0.22, 0.22, -0.22, 0, 0]
+])  # fmt: skip
+"""A spring from its end on the body to 0.88 of its length, where its ground is: along and across it."""
 SHALLOW = 0.1
 """Largest depth of hatching over the extent of a line that turns back."""
 
@@ -119,6 +123,16 @@ def draw_rollers(axes: Axes, points: Array, away: Array, size: float, color: str
     lines = np.stack([behind - 0.75 * size * across, behind + 0.75 * size * across], axis=1)
     axes.add_collection(LineCollection(list(lines), colors=color, linewidths=1.0, zorder=2))
     return np.concatenate([base, behind])
+
+
+def draw_springs(axes: Axes, points: Array, away: Array, size: float, color: str) -> Array:
+    """Draw springs from the points (k, 2) along unit vectors `away` (k, 2) to ground; return what they cover."""
+    across = np.column_stack([-away[:, 1], away[:, 0]])
+    coils = points[:, None] + size * (COIL[:, :1] * away[:, None] + COIL[:, 1:] * across[:, None])
+    ground = coils[:, -1:] + size * np.array([[-0.35], [0.35]]) * across[:, None]
+    lines = [*coils, *ground]
+    axes.add_collection(LineCollection(lines, colors=color, linewidths=1.0, zorder=2))
+    return np.concatenate(lines)
 
 
 def draw_arrows(axes: Axes, tails: Array, vectors: Array, color: str) -> Array:
