@@ -56,15 +56,15 @@ class Response:
         probes = np.eye(right.shape[1], loads + 1)
         probes[loads:, loads] = signs
 
-        def correction(weights: Array) -> Array:
-            return lu.forward(residual(_ordered(lu.backward(reduced @ weights), order), weights))
+        def correction(weights: Array, solution: Array) -> Array:
+            return lu.forward(residual(_ordered(solution, order), weights))
 
-        step = correction(probes)
+        solution = lu.backward(reduced @ probes)
+        step = correction(probes, solution)
         reduced[:, :loads] += step[:, :loads]
-        changes = lu.backward(np.column_stack([step[:, loads], reduced[:, loads:] @ signs]))[len(order) - count :]
-        change, size = np.abs(changes).max(axis=0, initial=0.0)
-        if change > PROBED * size:
-            reduced += correction(np.eye(right.shape[1]))
+        change = np.abs(lu.backward(step[:, loads], count)).max(initial=0.0)
+        if change > PROBED * np.abs(solution[len(order) - count :, loads]).max(initial=0.0):
+            reduced += correction(np.eye(right.shape[1]), lu.backward(reduced))
         return cls(lu=lu, order=order, reduced=reduced, last=lu.backward(reduced, count))
 
     @property
