@@ -7,12 +7,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.util import find_spec
+from itertools import pairwise
 from math import degrees, pi
 from pathlib import Path
 from typing import Any
 
 from bemcontact.checks.arguments import file_path, real_number, text_of_argument
 from bemcontact.errors import Issue, ProblemError
+from bemcontact.problems.geometry import MOST_POINTS
 from bemcontact.problems.units import METERS
 from bemcontact.spec.point_list import boundary_of_points
 
@@ -26,6 +28,8 @@ POINTS = (".csv", ".txt", ".dat")
 """Endings of files with lists of points."""
 UNNAMED = "edge"
 """Name of edges on the layer 0, before their numbers."""
+PIECES_OF_SPAN = 16
+"""Pieces into which a span of a spline is divided: a smooth edge through their ends is 1e-6 of their length off it."""
 CHORDS = 32
 """Chords of a curve whose area is summed."""
 
@@ -34,14 +38,16 @@ Edge = dict[str, Any]
 
 @dataclass(frozen=True, kw_only=True)
 class DrawnPiece:
-    """A line, an arc or a piece of an ellipse of a drawing; points are complex numbers x + iy.
+    """A line, an arc, a piece of an ellipse or a smooth curve of a drawing; points are complex numbers x + iy.
 
     Parameters
     ----------
     start, end : its ends; equal for a whole circle or ellipse
     layer : name of its layer
     shape : what an edge has besides its name and its ends
-    angles : first and last angle of an arc or an ellipse in degrees; None for a line
+    angles : first and last angle of an arc or an ellipse in degrees; None for others
+    through : points of a smooth curve from its start to its end; none of others
+    directions : of travel at its ends
     """
 
     start: complex
@@ -49,22 +55,28 @@ class DrawnPiece:
     layer: str
     shape: Mapping[str, Any]
     angles: tuple[float, float] | None = None
+    through: tuple[complex, ...] = ()
+    directions: tuple[complex, complex] = (0j, 0j)
 
     @property
     def closed(self) -> bool:
-        """Whether it is a whole circle or ellipse."""
+        """Whether it is a loop by itself."""
+        if self.through:
+            return self.start == self.end
         return self.angles is not None and abs(abs(self.angles[1] - self.angles[0]) - 360) < 1e-9
 
     @property
     def turned(self) -> "DrawnPiece":
         """The same piece from its end to its start."""
-        angles = None if self.angles is None else (self.angles[1], self.angles[0])
-        return replace(self, start=self.end, end=self.start, angles=angles)
+        angles, (first, last) = None if self.angles is None else (self.angles[1], self.angles[0]), self.directions
+        return replace(
+            self, start=self.end, end=self.start, angles=angles, through=self.through[::-1], directions=(-last, -first)
+        )
 
     def points(self) -> list[complex]:
         """Points from its start on, without its end."""
         if self.angles is None:
-            return [self.start]
+            return [self.start, *self.through[1:-1]]
         (first, last), (x, y) = self.angles, self.shape["center"]
         a, b = self.shape.get("semi_axes") or (self.shape["radius"],) * 2
         turn = rect(1, self.shape.get("rotation", 0.0) * pi / 180)
@@ -73,6 +85,11 @@ class DrawnPiece:
 
     def edge(self, name: str) -> Edge:
         """The edge of a boundary."""
+        if self.through:
+            points = [_pair(point) for point in (self.start, *self.through[1:-1], self.end)]
+            ends = zip(("start_direction", "end_direction"), self.directions, strict=True)
+            directions = {} if self.closed else {key: _pair(way) for key, way in ends}
+            return {"name": name, **self.shape, "points": points, **directions}
         if self.angles is None:
             return {"name": name, "start": _pair(self.start), "end": _pair(self.end)}
         first, last = self.angles
@@ -209,7 +226,7 @@ def drawn_pieces(drawing: Any, layer: str | None, scale: float) -> list[DrawnPie
         )
     found = [piece for piece in pieces if layer in (None, piece.layer)]
     if not found:
-        raise ProblemError("the drawing has no lines, arcs, circles, ellipses or polylines")
+        raise ProblemError("the drawing has no lines, arcs, circles, ellipses, splines or polylines")
     return [piece if layer is None else replace(piece, layer="0") for piece in found]
 
 
@@ -225,9 +242,12 @@ def _pieces(entity: Any, scale: float) -> Iterator[DrawnPiece]:
     if kind == "LINE":
         yield DrawnPiece(start=_point(dxf.start, scale), end=_point(dxf.end, scale), layer=dxf.layer, shape={})
         return
+    if kind == "SPLINE":
+        yield from _spline_pieces(entity, scale)
+        return
     if kind not in ("ARC", "CIRCLE", "ELLIPSE"):
         raise ProblemError(
-            f"the drawing has an entity {kind} on the layer '{dxf.layer}', which is no line, arc or ellipse; "
+            f"the drawing has an entity {kind} on the layer '{dxf.layer}', which is no line, arc, ellipse or spline; "
             "convert it to a polyline with arcs, or leave its layer out"
         )
     mirrored = dxf.extrusion.z < 0
@@ -249,6 +269,31 @@ def _pieces(entity: Any, scale: float) -> Iterator[DrawnPiece]:
     piece = DrawnPiece(start=0j, end=0j, layer=dxf.layer, shape=shape, angles=(first, last))
     ends = [piece.points()[0], replace(piece, angles=(last, first)).points()[0]]
     yield replace(piece, start=ends[0], end=ends[0] if piece.closed else ends[1])
+
+
+def _spline_pieces(entity: Any, scale: float) -> Iterator[DrawnPiece]:
+    """The smooth curves of a spline (NURBS) between its corners, through points of it."""
+    layer, curve = entity.dxf.layer, entity.construction_tool()
+    knots = [knot for knot in curve.knots() if 0 <= knot <= curve.max_t]
+    corners = [knot for knot in dict.fromkeys(knots) if knots.count(knot) >= curve.degree or knot in (0, curve.max_t)]
+    for first, last in pairwise(corners):
+        spans = [*pairwise(dict.fromkeys(knot for knot in knots if first <= knot <= last))]
+        steps = max(2, min(PIECES_OF_SPAN, (MOST_POINTS - 1) // len(spans)))
+        if steps * len(spans) >= MOST_POINTS:
+            message = (
+                f"a spline on the layer '{layer}' has {len(spans)} spans, and an edge at most {MOST_POINTS} points"
+            )
+            raise ProblemError(f"{message}; draw it with fewer")
+        at = [start + (end - start) * i / steps for start, end in spans for i in range(steps)] + [last]
+        at[-1] -= 1e-12 * (last - first) * (last < curve.max_t)  # the side of a corner that belongs to this curve
+        derivatives = [[_point(vector, scale) for vector in pair] for pair in curve.derivatives(at, n=1)]
+        points = [place for place, _ in derivatives]
+        if abs(points[-1] - points[0]) <= 1e-9 * max(abs(point - points[0]) for point in points):
+            points[-1] = points[0]
+        yield DrawnPiece(
+            start=points[0], end=points[-1], layer=layer, shape={"kind": "spline"}, through=tuple(points),
+            directions=(derivatives[0][1], derivatives[-1][1]),
+        )  # fmt: skip
 
 
 def boundary_of(pieces: Sequence[DrawnPiece], name: str) -> dict[str, Any]:
@@ -285,7 +330,7 @@ def _chained(pieces: Sequence[DrawnPiece], tolerance: float, name: str) -> list[
     nodes = list[complex]()
     ends = list[tuple[int, int]]()
     for piece in pieces:
-        if abs(piece.end - piece.start) <= tolerance and piece.angles is None:
+        if abs(piece.end - piece.start) <= tolerance and piece.angles is None and not piece.through:
             raise ProblemError(f"{name} has a line without length at {_words(piece.start)}; remove it")
         ends.append((_node(piece.start, nodes, tolerance), _node(piece.end, nodes, tolerance)))
     _ensure_closed(pieces, ends, nodes, tolerance, name)
@@ -349,6 +394,8 @@ def _between(piece: DrawnPiece, start: complex, end: complex) -> DrawnPiece:
 
 def _middle(piece: DrawnPiece) -> complex:
     """A point in the middle of a piece."""
+    if piece.through:
+        return piece.through[len(piece.through) // 2]
     return (piece.start + piece.end) / 2 if piece.angles is None else piece.points()[CHORDS // 2]
 
 

@@ -5,6 +5,7 @@ import math
 import ezdxf
 import numpy as np
 import pytest
+from ezdxf.math import BSpline, fit_points_to_cad_cv, rational_bspline_from_arc
 
 import bemcontact
 from bemcontact.errors import ProblemError, SpecError
@@ -73,6 +74,55 @@ def test_polylines_with_arcs_blocks_and_mirrored_arcs_are_read(tmp_path):
 
     with pytest.raises(ProblemError, match=r"two pieces lie on each other at \(.*5\)"):
         bemcontact.outline(drawing(tmp_path, lens))
+
+
+def kinds(boundary):
+    return [edge.kind for loop in (boundary.outer, *boundary.holes) for edge in loop]
+
+
+def test_splines_are_smooth_edges_through_points_of_them(tmp_path):
+    """A quarter of a circle as a rational spline of degree two, and a spline with a corner, which makes two edges."""
+
+    def draw(space):
+        quarter = rational_bspline_from_arc((0, 0), 5, 0, 90)
+        for ends in (((0, 5), (0, 0)), ((0, 0), (5, 0))):
+            space.add_line(*ends)
+        space.add_spline().apply_construction_tool(quarter)
+
+    boundary = Boundary(**bemcontact.outline(drawing(tmp_path, draw)))
+    (edge,) = [edge for edge, kind in zip(boundary.edges, kinds(boundary), strict=True) if kind == "spline"]
+    points, normals = edge.points(np.linspace(0, 1, 401)), edge.normals(np.linspace(0, 1, 401))
+    step = np.pi / 32  # of the angle between points; a cubic spline is h⁴ 5/384 off a unit circle, its slope h³/24
+    assert np.abs(np.hypot(*points.T) - 5).max() < 5 * step**4 * 5 / 384
+    assert np.abs(normals - points / 5).max() < step**3 / 24
+    assert edge.length == pytest.approx(2.5 * math.pi, rel=1e-6)
+
+    def two_parabolas(space):
+        curve = BSpline([(0, 0), (1, 2), (2, 0), (3, 2), (4, 0)], order=3, knots=[0, 0, 0, 1, 1, 2, 2, 2])
+        space.add_spline().apply_construction_tool(curve)
+        space.add_line((0, 0), (0, -1))
+        space.add_line((0, -1), (4, -1))
+        space.add_line((4, -1), (4, 0))
+
+    boundary = Boundary(**bemcontact.outline(drawing(tmp_path, two_parabolas)))
+    assert sorted(kinds(boundary)) == ["line"] * 3 + ["spline"] * 2
+    off = 0.5 * 0.25**4 * 5 / 384  # at the top, of radius 1/2, points are 1/8 apart
+    assert area(boundary) == pytest.approx(4 + 2 * 4 / 3, rel=0, abs=4 * off)
+
+
+def test_a_closed_spline_is_a_hole_by_itself(tmp_path):
+    """A circle as a rational spline, whose quarters meet in double knots, and one through fitted points."""
+
+    def draw(space):
+        space.add_lwpolyline([(-9, -9), (9, -9), (9, 9), (-9, 9)], close=True)
+        space.add_spline().apply_construction_tool(rational_bspline_from_arc((0, 0), 5, 0, 360))
+        angles = np.linspace(0, 2 * np.pi, 25)[:-1]
+        around = [(7 + np.cos(a), 7 + np.sin(a)) for a in angles]
+        space.add_spline().apply_construction_tool(fit_points_to_cad_cv([*around, around[0]]))
+
+    boundary = Boundary(**bemcontact.outline(drawing(tmp_path, draw)))
+    assert len(boundary.loops) == 3
+    assert area(boundary) == pytest.approx(18 * 18 - 25 * np.pi - np.pi, rel=1e-4)
 
 
 def test_a_layer_and_a_scale_are_chosen(tmp_path):
@@ -153,7 +203,7 @@ SIDES = (((0, 0), (4, 0)), ((4, 0), (4, 3)), ((4, 3), (0, 3)), ((0, 3), (0, 0)))
         (box(*SIDES, ((2, 2), (2, 2))), "a line without length at (2, 2)"),
         (box(((0, 0), (4, 0)), ((4, 0), (0, 3)), ((0, 3), (4, 3)), ((4, 3), (0, 0))), "cross"),
         (lambda space: space.add_text("nothing"), "has no lines, arcs, circles"),
-        (lambda space: space.add_spline([(0, 0), (1, 1), (2, 0)]), "an entity SPLINE on the layer '0'"),
+        (lambda space: space.add_3dface([(0, 0), (1, 1), (2, 0)]), "an entity 3DFACE on the layer '0'"),
     ],
 )
 def test_broken_outlines_are_refused_with_the_place(tmp_path, draw, words):
