@@ -8,7 +8,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, NamedTuple
 
-from bemcontact.errors import Issue, KeyPath
+from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.problems.units import METERS, NEWTONS
 
 QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*((?:1\s*/\s*)?[A-Za-zµμ°%][^#]*?)\s*")
@@ -116,6 +116,21 @@ def with_numbers(data: Any) -> tuple[Any, list[Issue]]:
             return data, [Issue(path=("units", key) if label else ("units",), message=message)]
     issues = list[Issue]()
     return _converted(data, (), _Reader(*labels), issues), issues
+
+
+def in_units(value: Any, path: KeyPath, length: str, force: str) -> Any:
+    """A value at a key path with numbers for texts with units; `ProblemError` for one that is none."""
+    if next(_texts(value, path), None) is None:
+        return value
+    for key, label, known in (("length", length, METERS), ("force", force, NEWTONS)):
+        if label not in known:
+            message = f"{value} is converted to the units of the problem: give units.{key} as one of {', '.join(known)}"
+            raise ProblemError(Issue(path=path, message=message))
+    issues = list[Issue]()
+    read = _converted(value, path, _Reader(length, force), issues)
+    if issues:
+        raise ProblemError(issues)
+    return read
 
 
 def _texts(value: Any, path: KeyPath) -> Iterator[str]:

@@ -11,6 +11,8 @@ import numpy as np
 from bemcontact.checks.arguments import instance_of, shown, text_of_argument
 from bemcontact.errors import Issue, KeyPath, OptionError, ProblemError, SpecError
 from bemcontact.problems.key_path import parsed_path
+from bemcontact.problems.quantities import in_units
+from bemcontact.problems.units import Units
 from bemcontact.spec import written_value
 
 VARIANT, CASE = "variant", "case"
@@ -18,6 +20,8 @@ VARIANT, CASE = "variant", "case"
 MOST_MEMBERS = 1_000_000
 """Largest number of members of a study."""
 _RANGE = re.compile(r"\s*([^:\s]+)\s*:\s*([^:\s]+)\s*:\s*([^:\s]+)\s*")
+_IN_UNITS = r"\s*([-+.\deE]+)\s*([^-+.\d:\s][^:]*?)\s*:"
+_RANGE_IN_UNITS = re.compile(2 * _IN_UNITS + r"\s*(\d+)\s*")
 _PART_OF_RANGE = re.compile(r"\s*[-+.\d][-+.\deE]*(\s*:\s*[-+.\deE]*)+")
 _OPENING, _CLOSING, _QUOTES = "[{(", "]})", "\"'"
 
@@ -45,10 +49,13 @@ class Axis:
         return self.keys == (VARIANT,)
 
 
-def axes_of(vary: Mapping[Any, Any]) -> tuple[Axis, ...]:
-    """Read axes from values by key; `ProblemError` if a key occurs twice, or an axis has no values or equal ones."""
+def axes_of(vary: Mapping[Any, Any], units: Units) -> tuple[Axis, ...]:
+    """Read axes from values by key, values with units as numbers in those of the problem.
+
+    `ProblemError` if a key occurs twice, or an axis has no values or equal ones.
+    """
     instance_of(vary, Mapping, "vary", 'give values by key, such as {"conditions.top.pressure": [10, 20]}')
-    axes = tuple(_axis(keys, values) for keys, values in vary.items())
+    axes = tuple(_axis(keys, values, units) for keys, values in vary.items())
     if not axes:
         raise OptionError("there is nothing to vary; give values by key")
     stated = [path for axis in axes for path in axis.paths]
@@ -61,7 +68,7 @@ def axes_of(vary: Mapping[Any, Any]) -> tuple[Axis, ...]:
     return axes
 
 
-def _axis(keys: object, values: object) -> Axis:
+def _axis(keys: object, values: object, units: Units) -> Axis:
     """One axis from a key, several keys with commas between them or in a tuple, and values."""
     parts = keys if isinstance(keys, tuple) else text_of_argument(keys, "a key of vary").split(",")
     axis = Axis(keys=tuple(text_of_argument(part, "a key of vary").strip() for part in parts), values=())
@@ -69,7 +76,8 @@ def _axis(keys: object, values: object) -> Axis:
         raise OptionError(f"{axis.name}: variants and load cases are varied alone, without other keys")
     if isinstance(values, str | bytes | Mapping) or not hasattr(values, "__iter__"):
         raise OptionError(f"{axis.name}: a list of values is needed; found {shown(values)}")
-    listed = tuple(map(_plain, cast(Sequence[object], values)))
+    plain = map(_plain, cast(Sequence[object], values))
+    listed = tuple(in_units(value, axis.paths[0], units.length, units.force) for value in plain)
     if not listed:
         raise OptionError(f"{axis.name}: there are no values")
     seen = set[str]()
@@ -120,6 +128,11 @@ def written_axis(text: str) -> tuple[str, list[Any]]:
         return keys, [item.strip().strip(_QUOTES) for item in _items(written)]
     if parts := _RANGE.fullmatch(written):
         return keys, _range(keys, *parts.groups())
+    if parts := _RANGE_IN_UNITS.fullmatch(written):
+        first, unit, last, other, count = parts.groups()
+        if unit != other:
+            raise OptionError(f"{keys}: both ends of a range need one unit; found {unit} and {other}")
+        return keys, [f"{value!r} {unit}" for value in _range(keys, first, last, count)]
     if _PART_OF_RANGE.fullmatch(written):
         raise OptionError(f"{keys}: expected a:b:n for n values from a to b, or v1,v2,v3; found {written.strip()}")
     try:

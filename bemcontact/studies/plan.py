@@ -138,7 +138,7 @@ def study_plan(problem: Problem, vary: Mapping[Any, Any], **asking: Unpack[Askin
     `ProblemError` if a key leads nowhere, or a value is wrong.
     """
     ensure_kind(problem, Problem)
-    axes = axes_of(vary)
+    axes = axes_of(vary, problem.units)
     problem = asked(problem, asking)
     if not any(axis.of_variants for axis in axes):
         problem = problem.model_copy(update={"variants": {}})

@@ -25,7 +25,7 @@ def row(number: int, status: MemberStatus, peak: float | None, message: str = ""
 
 def study(*rows: MemberRow) -> StudyTable:
     return StudyTable(
-        name="<b>study</b>", units=Units(length="mm", force="N"), axes=axes_of({"a.b": [0.0, 1.0]}),
+        name="<b>study</b>", units=Units(length="mm", force="N"), axes=axes_of({"a.b": [0.0, 1.0]}, Units()),
         outputs=("peak",), rows=rows,
     )  # fmt: skip
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from bemcontact.errors import ProblemError
+from bemcontact.problems.units import Units
 from bemcontact.studies.axes import axes_of, written_axes, written_axis
 
 
@@ -22,6 +23,8 @@ from bemcontact.studies.axes import axes_of, written_axes, written_axis
         ("variant=paper,stated mesh", "variant", ["paper", "stated mesh"]),
         ("case=1:2:3", "case", ["1:2:3"]),  # a name may have colons
         ("a.x,b.y=1,2", "a.x,b.y", [1, 2]),
+        ("a=1 GPa:-2e1 GPa:2", "a", ["1.0 GPa", "-20.0 GPa"]),
+        ("a=7 N/mm:8 N/mm:3", "a", ["7.0 N/mm", "7.5 N/mm", "8.0 N/mm"]),
     ],
 )
 def test_written_axes_are_read(text: str, keys: str, values: list[Any]):
@@ -38,11 +41,26 @@ def test_written_axes_are_read(text: str, keys: str, values: list[Any]):
         ("a=1:1:4", "two different"),
         ("a=1:inf:4", "finite"),
         ("a=[1", "bracket"),
+        ("a=1 GPa:2 MPa:2", "both ends of a range need one unit; found GPa and MPa"),
     ],
 )
 def test_badly_written_axes_are_refused(text: str, says: str):
     with pytest.raises(ProblemError, match=re.escape(says)):
         written_axis(text)
+
+
+def test_values_with_units_are_numbers_in_the_units_of_the_problem():
+    """So that a page has them on an axis of numbers, and equal ones are found."""
+    in_mm, key = Units(length="mm", force="N"), "material.young_modulus"
+    (axis,) = axes_of({key: ["70 GPa", 80e3, "9e10 Pa"]}, in_mm)
+    assert axis.values == pytest.approx((70e3, 80e3, 90e3), rel=1e-15)
+    for values, says in (
+        (["70 GPa", 70000], "occurs twice"), (["70 mm", 1], "expected a stress such as 210 GPa; found 70 mm"),
+    ):  # fmt: skip
+        with pytest.raises(ProblemError, match=says):
+            axes_of({key: values}, in_mm)
+    with pytest.raises(ProblemError, match=r"give units\.length as one of"):
+        axes_of({key: ["70 GPa"]}, Units())
 
 
 def test_a_key_given_twice_is_refused():
@@ -51,9 +69,9 @@ def test_a_key_given_twice_is_refused():
 
 
 def test_arrays_and_tuples_become_lists_of_numbers():
-    (axis,) = axes_of({("a", "b"): np.array([1.0, 2.0])})
+    (axis,) = axes_of({("a", "b"): np.array([1.0, 2.0])}, Units())
     assert (axis.keys, axis.values, axis.name) == (("a", "b"), (1.0, 2.0), "a,b")
-    assert axes_of({"a": [(1, 2), (3, 4)]})[0].values == ([1, 2], [3, 4])
+    assert axes_of({"a": [(1, 2), (3, 4)]}, Units())[0].values == ([1, 2], [3, 4])
 
 
 @pytest.mark.parametrize(
@@ -76,4 +94,4 @@ def test_arrays_and_tuples_become_lists_of_numbers():
 )
 def test_axes_that_make_no_study_are_refused(vary: Any, says: str):
     with pytest.raises(ProblemError, match=re.escape(says)):
-        axes_of(vary)
+        axes_of(vary, Units())

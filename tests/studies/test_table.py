@@ -25,7 +25,7 @@ def row(number: int, value: object, **outputs: Reading) -> MemberRow:
 MIXED = StudyTable(
     name="mixed",
     units=Units(length="mm", force="N"),
-    axes=axes_of({"a": [1.5, "x, y", [1, 2]]}),
+    axes=axes_of({"a": [1.5, "x, y", [1, 2]]}, Units()),
     outputs=("peak",),
     rows=(
         row(0, 1.5, peak=Reading(value=3.0, error=0.1)),

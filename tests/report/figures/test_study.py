@@ -14,7 +14,7 @@ from bemcontact.studies.table import StudyTable
 
 def table(*sizes: int, bad: dict[int, MemberStatus] | None = None) -> StudyTable:
     """A study whose peak is the number of the member."""
-    axes = axes_of({f"axis {i}": [float(value) for value in range(size)] for i, size in enumerate(sizes)})
+    axes = axes_of({f"axis {i}": [float(value) for value in range(size)] for i, size in enumerate(sizes)}, Units())
     rows = []
     for number, position in enumerate(np.ndindex(*sizes)):
         values = {axis.name: axis.values[i] for axis, i in zip(axes, position, strict=True)}
