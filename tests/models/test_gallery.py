@@ -50,9 +50,11 @@ def scores(name: str, formulation: str, refine: int, case: str | None = None) ->
 
 def test_gallery_is_complete():
     assert GALLERY == [
+        "beam_on_springs",
         "beam_on_two_supports",
         "block_in_corner",
         "body_between_two_tools",
+        "cam_on_follower",
         "eccentric_punch",
         "flat_punch",
         "hertz_small",
