@@ -28,8 +28,10 @@ POINTS = (".csv", ".txt", ".dat")
 """Endings of files with lists of points."""
 UNNAMED = "edge"
 """Name of edges on the layer 0, before their numbers."""
-PIECES_OF_SPAN = 16
-"""Pieces into which a span of a spline is divided: a smooth edge through their ends is 1e-6 of their length off it."""
+SMOOTH = 1e-6
+"""Turn in radians where a closed spline begins that is no corner."""
+TURN = pi / 90
+"""Largest turn in radians between points of a spline: a smooth edge through them has its curvature to 1e-4."""
 CHORDS = 32
 """Chords of a curve whose area is summed."""
 
@@ -274,26 +276,38 @@ def _pieces(entity: Any, scale: float) -> Iterator[DrawnPiece]:
 def _spline_pieces(entity: Any, scale: float) -> Iterator[DrawnPiece]:
     """The smooth curves of a spline (NURBS) between its corners, through points of it."""
     layer, curve = entity.dxf.layer, entity.construction_tool()
-    knots = [knot for knot in curve.knots() if 0 <= knot <= curve.max_t]
-    corners = [knot for knot in dict.fromkeys(knots) if knots.count(knot) >= curve.degree or knot in (0, curve.max_t)]
+    every = curve.knots()
+    begin, end = every[curve.degree], every[curve.count]  # knots beyond belong to no place of the curve
+    knots = [knot for knot in every if begin <= knot <= end]
+    corners = [knot for knot in dict.fromkeys(knots) if knots.count(knot) >= curve.degree or knot in (begin, end)]
     for first, last in pairwise(corners):
         spans = [*pairwise(dict.fromkeys(knot for knot in knots if first <= knot <= last))]
-        steps = max(2, min(PIECES_OF_SPAN, (MOST_POINTS - 1) // len(spans)))
-        if steps * len(spans) >= MOST_POINTS:
-            message = (
-                f"a spline on the layer '{layer}' has {len(spans)} spans, and an edge at most {MOST_POINTS} points"
-            )
-            raise ProblemError(f"{message}; draw it with fewer")
-        at = [start + (end - start) * i / steps for start, end in spans for i in range(steps)] + [last]
-        at[-1] -= 1e-12 * (last - first) * (last < curve.max_t)  # the side of a corner that belongs to this curve
-        derivatives = [[_point(vector, scale) for vector in pair] for pair in curve.derivatives(at, n=1)]
-        points = [place for place, _ in derivatives]
+        until = last - 1e-12 * (last - first) * (last < end)  # the side of a corner that belongs to this curve
+        at = [*(start + (stop - start) * i / 4 for start, stop in spans for i in range(4)), until]
+        while len(at) <= MOST_POINTS:
+            derivatives = [[_point(vector, scale) for vector in pair] for pair in curve.derivatives(at, n=1)]
+            if stills := [place for place, way in derivatives if not way]:
+                message = f"a spline on the layer '{layer}' has no direction at {_words(stills[0])}; draw it anew"
+                raise ProblemError(message)
+            turns = (abs(phase(other / one)) for (_, one), (_, other) in pairwise(derivatives))
+            between = [(one + other) / 2 for (one, other), turn in zip(pairwise(at), turns, strict=True) if turn > TURN]
+            if not between:
+                break
+            at = sorted([*at, *between])
+        else:
+            message = f"a spline on the layer '{layer}' needs more than {MOST_POINTS} points; draw it in several parts"
+            raise ProblemError(message)
+        points, ways = ([pair[i] for pair in derivatives] for i in (0, 1))
+        stops = [0, len(at) - 1]
         if abs(points[-1] - points[0]) <= 1e-9 * max(abs(point - points[0]) for point in points):
             points[-1] = points[0]
-        yield DrawnPiece(
-            start=points[0], end=points[-1], layer=layer, shape={"kind": "spline"}, through=tuple(points),
-            directions=(derivatives[0][1], derivatives[-1][1]),
-        )  # fmt: skip
+            if abs(phase(ways[-1] / ways[0])) > SMOOTH:
+                stops.insert(1, len(at) // 2)  # one edge that is closed would be smooth at this corner
+        for i, j in pairwise(stops):
+            yield DrawnPiece(
+                start=points[i], end=points[j], layer=layer, shape={"kind": "spline"}, through=tuple(points[i : j + 1]),
+                directions=(ways[i], ways[j]),
+            )  # fmt: skip
 
 
 def boundary_of(pieces: Sequence[DrawnPiece], name: str) -> dict[str, Any]:

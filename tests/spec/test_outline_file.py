@@ -92,7 +92,7 @@ def test_splines_are_smooth_edges_through_points_of_them(tmp_path):
     boundary = Boundary(**bemcontact.outline(drawing(tmp_path, draw)))
     (edge,) = [edge for edge, kind in zip(boundary.edges, kinds(boundary), strict=True) if kind == "spline"]
     points, normals = edge.points(np.linspace(0, 1, 401)), edge.normals(np.linspace(0, 1, 401))
-    step = np.pi / 32  # of the angle between points; a cubic spline is h⁴ 5/384 off a unit circle, its slope h³/24
+    step = np.pi / 90  # of the angle between points; a cubic spline is h⁴ 5/384 off a unit circle, its slope h³/24
     assert np.abs(np.hypot(*points.T) - 5).max() < 5 * step**4 * 5 / 384
     assert np.abs(normals - points / 5).max() < step**3 / 24
     assert edge.length == pytest.approx(2.5 * math.pi, rel=1e-6)
@@ -106,8 +106,7 @@ def test_splines_are_smooth_edges_through_points_of_them(tmp_path):
 
     boundary = Boundary(**bemcontact.outline(drawing(tmp_path, two_parabolas)))
     assert sorted(kinds(boundary)) == ["line"] * 3 + ["spline"] * 2
-    off = 0.5 * 0.25**4 * 5 / 384  # at the top, of radius 1/2, points are 1/8 apart
-    assert area(boundary) == pytest.approx(4 + 2 * 4 / 3, rel=0, abs=4 * off)
+    assert area(boundary) == pytest.approx(4 + 2 * 4 / 3, rel=1e-7)
 
 
 def test_a_closed_spline_is_a_hole_by_itself(tmp_path):
@@ -123,6 +122,37 @@ def test_a_closed_spline_is_a_hole_by_itself(tmp_path):
     boundary = Boundary(**bemcontact.outline(drawing(tmp_path, draw)))
     assert len(boundary.loops) == 3
     assert area(boundary) == pytest.approx(18 * 18 - 25 * np.pi - np.pi, rel=1e-4)
+
+
+def test_a_spline_without_clamped_ends_is_its_part_between_the_inner_knots(tmp_path):
+    """Closed, uniform, of degree three, through (P + 4 Q + R)/6 at knots: its radius is least between them."""
+    angles = np.linspace(0, 2 * np.pi, 13)[:-1]
+    corners = 5 * np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
+
+    def draw(space):
+        space.add_spline().set_closed(corners, degree=3)
+
+    boundary = Boundary(**bemcontact.outline(drawing(tmp_path, draw)))
+    (edge,) = boundary.edges
+    least = 5 * (46 * np.cos(np.pi / 12) + 2 * np.cos(np.pi / 4)) / 48
+    largest = 5 * (4 + 2 * np.cos(np.pi / 6)) / 6
+    radii = np.hypot(*edge.points(np.linspace(0, 1, 12 * 8 + 1)).T)
+    assert radii.max() == pytest.approx(max(least, largest), rel=1e-6)
+    assert radii.min() == pytest.approx(min(least, largest), rel=1e-6)
+
+
+def test_a_closed_spline_keeps_a_corner_where_it_begins(tmp_path):
+    """A drop: a closed smooth edge would round its tip."""
+
+    def draw(space):
+        space.add_spline().apply_construction_tool(BSpline([(0, 0), (6, -5), (6, 5), (0, 0)], order=4))
+
+    boundary = Boundary(**bemcontact.outline(drawing(tmp_path, draw)))
+    assert kinds(boundary) == ["spline", "spline"]
+    joints = [[edge.directions(np.array([at]))[0] for at in (0.0, 1.0)] for edge in boundary.edges]
+    cosines = [one[1] @ other[0] for one, other in zip(joints, joints[::-1], strict=True)]
+    assert sorted(cosines) == pytest.approx([(25 - 36) / 61, 1], abs=1e-6)  # at the tip, and at the other joint
+    assert area(boundary) == pytest.approx(3 / 20 * 60, rel=1e-7)  # 3/20 P1 x P2
 
 
 def test_a_layer_and_a_scale_are_chosen(tmp_path):
@@ -203,6 +233,10 @@ SIDES = (((0, 0), (4, 0)), ((4, 0), (4, 3)), ((4, 3), (0, 3)), ((0, 3), (0, 0)))
         (box(*SIDES, ((2, 2), (2, 2))), "a line without length at (2, 2)"),
         (box(((0, 0), (4, 0)), ((4, 0), (0, 3)), ((0, 3), (4, 3)), ((4, 3), (0, 0))), "cross"),
         (lambda space: space.add_text("nothing"), "has no lines, arcs, circles"),
+        (
+            lambda space: space.add_spline().apply_construction_tool(BSpline([(0, 0), (0, 0), (1, 1), (2, 0)])),
+            "no direction at (0, 0)",
+        ),
         (lambda space: space.add_3dface([(0, 0), (1, 1), (2, 0)]), "an entity 3DFACE on the layer '0'"),
     ],
 )
