@@ -138,8 +138,8 @@ def study_plan(problem: Problem, vary: Mapping[Any, Any], **asking: Unpack[Askin
     `ProblemError` if a key leads nowhere, or a value is wrong.
     """
     ensure_kind(problem, Problem)
-    axes = axes_of(vary, problem.units)
     problem = asked(problem, asking)
+    axes = axes_of(vary, problem.units)
     if not any(axis.of_variants for axis in axes):
         problem = problem.model_copy(update={"variants": {}})
     elif not problem.variants:
