@@ -282,7 +282,7 @@ class BoundaryValues:
             stiffness=self.stiffness[part.elements],
         )
 
-    def of_springs(self, displacement: Array) -> Array:
+    def spring_traction(self, displacement: Array) -> Array:
         """Traction (m, 3, 2) [p] by springs at displacements (m, 3, 2) [L] of the nodes of elements."""
         return -np.einsum("mkij,mkj->mki", self.stiffness, displacement)
 

@@ -25,9 +25,17 @@ def modulus_rate(one: Condensation, doubled: Condensation, modulus: float, press
     Raises
     ------
     ProblemError
-        If the surface that a body touches depends on E, as a deflected contour may.
+        If the surface that a body touches depends on E, as a deflected contour may; or if a body of this modulus is on
+        springs, with which its compliance does not fall as 1/E.
     """
     body, other = one.body, doubled.body
+    for stated, part, changed in zip(body.problem.parts, one.parts, doubled.parts, strict=True):
+        if part.system.material != changed.system.material and part.system.values.stiffness.any():
+            who = f"the body '{stated.name}'" if body.problem.several else "the body"
+            raise ProblemError(
+                f"{who} is on springs, so that its compliance is no multiple of 1/E, and there is no derivative here; "
+                "solve at two moduli and take the difference"
+            )
     if _differ(body.points.normals, other.points.normals, 1.0) or _differ(
         body.points.gap, other.points.gap, body.mesh.size
     ):

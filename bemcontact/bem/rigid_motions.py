@@ -17,8 +17,8 @@ from bemcontact.problems.problem import Problem
 HELD = 1e-9
 """Singular value, relative to one, below which the prescribed displacements do not hold a motion."""
 
-SPRING = 1e-12
-"""Stiffness across springs, relative to that along them, that is round-off."""
+UNSPRUNG = 1e-12
+"""Stiffness in one direction, relative to that across it, that is round-off."""
 
 SIDEWAYS = 0.01
 """Component of a unit vector from which it is named."""
@@ -128,7 +128,7 @@ def _stretched(motions: RigidMotions, mesh: Mesh, stiffness: Array) -> Array:
     places = stiffness.any(axis=(2, 3))
     size, ways = np.linalg.eigh(stiffness[places])  # (q, 2), (q, 2, 2) with the directions in columns
     along = np.einsum("qxi,qxk->qik", ways, motions.displacement(mesh.nodes[mesh.elements[places]]))
-    return along[size > SPRING * size[:, 1:]]
+    return along[size > UNSPRUNG * size[:, 1:]]
 
 
 def echelon(basis: Array) -> Array:

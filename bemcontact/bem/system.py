@@ -268,7 +268,7 @@ class System:
 
         Springs add to it at nodes with prescribed displacement.
         """
-        mesh, springs = self.mesh, self.values.of_springs
+        mesh, springs = self.mesh, self.values.spring_traction
         known = [
             item.values.traction + springs(item.values.displacement[mesh.elements]) - item.particular.traction
             for item in self.loadings
@@ -450,7 +450,7 @@ class System:
             displacement, traction = loading.values.displacement.copy(), loading.values.traction.copy()
         sought = self.unknowns.displacement >= 0
         displacement[sought] = z[self.unknowns.displacement[sought]] * self.length
-        traction += self.values.of_springs(displacement[self.mesh.elements])
+        traction += self.values.spring_traction(displacement[self.mesh.elements])
         sought = self.unknowns.traction >= 0
         traction[sought] = z[self.unknowns.traction[sought]] * self.stress
         return displacement, traction

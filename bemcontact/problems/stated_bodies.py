@@ -19,6 +19,7 @@ from bemcontact.problems.bodies import (
     Sides,
     named_loops,
     placed,
+    qualified,
     unknown_edge,
     with_boundary,
 )
@@ -247,11 +248,15 @@ class StatedBodies(SpecModel, Drawn):
         return moduli[0] / sum(moduli)
 
     def _spinning_radius(self, body: str) -> float:
-        """Radius [L] of a body that is not held and may touch with circles about one point only; else infinite."""
+        """Radius [L] of a body that is not held and may touch with circles about one point only; else infinite.
+
+        Springs across a circle about this point hold no spin.
+        """
         contacts, bonds = ([*pairs] for pairs in ((c.between for c in self.contacts.values()), self.bonded.values()))
         sides = [side for pair in contacts for side in pair if _body_in(side) == body]
         bonded = any(_body_in(side) == body for pair in bonds for side in pair)
-        held = any(condition.holds for condition in self.bodies[body].conditions.values())
+        conditions = {qualified(body, name): condition for name, condition in self.bodies[body].conditions.items()}
+        held = any(condition.displacement.given for condition in conditions.values())
         held |= any(
             condition.displacement.given and self.part_of(edge) == body
             for case in self.load_cases.values()
@@ -259,12 +264,14 @@ class StatedBodies(SpecModel, Drawn):
         )
         zones = {edge for zone in self.contact_zones.values() for edge in zone.edges or (body,)}
         touching = {name for side in sides for name in side} | zones
-        loops = [
-            loop
+        springs = {name: condition.spring for name, condition in conditions.items() if condition.spring is not None}
+        held |= any(spring.given != ("normal",) for spring in springs.values())
+        curves = [
+            edge.curve
             for loop in named_loops(self.boundary_of(body), body)
-            if body in touching or any(edge.name in touching for edge in loop)
+            for edge in loop
+            if edge.name in springs or body in touching or any(other.name in touching for other in loop)
         ]
-        curves = [edge.curve for loop in loops for edge in loop]
         arcs = [curve for curve in curves if isinstance(curve, CircularArc)]
         if held or bonded or not arcs or len(arcs) < len(curves):
             return np.inf

@@ -139,6 +139,15 @@ def test_modulus_of_each_of_two_bonded_bodies_against_differences():
     assert np.abs(rest).max() < 1e-8 * largest
 
 
+def test_modulus_beside_a_body_on_springs_against_differences():
+    """The compliance of the body on springs is no multiple of 1/E: only its own modulus has no derivative here."""
+    spring = {"spring": {"normal": 300.0, "tangent": 50.0}}
+    problem = pressed().with_value("bodies.wall.conditions.bottom", spring)
+    assert_as_differences(problem, DISK)
+    with pytest.raises(ProblemError, match="the body 'wall' is on springs"):
+        bemcontact.sensitivities(problem, [WALL])
+
+
 @pytest.fixture(scope="module")
 def cylinder() -> Problem:
     return bemcontact.load(MODELS / "cylinder_on_plane.yaml", variant="stated mesh").with_value("accuracy", None)
