@@ -1,5 +1,6 @@
 """Edges as the user gives them: lines, circular arcs and elliptic arcs, each with its number of elements."""
 
+from collections.abc import Mapping
 from itertools import pairwise
 from math import atan2, hypot, pi, radians
 from typing import Annotated, Any, ClassVar, Literal, Self, get_args
@@ -346,6 +347,7 @@ class Fillet(_EdgeBase):
     """A rounded corner between the edges before and after it: an arc that is tangent to both, which it shortens."""
 
     example: ClassVar[str] = "{fillet: 2}"
+    other_words: ClassVar[Mapping[str, str]] = {"radius": "the radius is the value of fillet: {fillet: 2}"}
 
     kind: Literal["fillet"] = "fillet"
     """The shape of the edge: a fillet has the key fillet."""

@@ -50,6 +50,11 @@ class Units(SpecModel):
         return named or (f"{self.force}/{self.length}²" if self.force and self.length else "")
 
     @property
+    def foundation(self) -> str:
+        """The label of the unit of stiffness of a foundation, such as N/mm³; empty if a label is missing."""
+        return f"{self.force}/{self.length}³" if self.force and self.length else ""
+
+    @property
     def line_force(self) -> str:
         """The label of the unit of force per thickness, such as kN/mm; empty if a label is missing."""
         return f"{self.force}/{self.length}" if self.force and self.length else ""

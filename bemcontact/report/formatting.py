@@ -95,10 +95,9 @@ def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]
             if field is not None:
                 yield f"{symbol}_{axis} = {field_on(field, edge, unit)}"
     if condition.spring is not None:
-        unit = f"{units.stress}/{units.length}" if units.stress and units.length else ""
         for way in condition.spring.given:
             across = {"normal": "across it", "tangent": "along it"}.get(way, f"along {way}")
-            yield f"springs {across} {with_unit(number(getattr(condition.spring, way)), unit)}"
+            yield f"springs {across} {with_unit(number(getattr(condition.spring, way)), units.foundation)}"
     if condition.pressure is not None:
         yield f"pressure {field_on(condition.pressure, edge, units.stress)}"
     for force in condition.force:

@@ -40,3 +40,4 @@ def test_surfaces_in_words():
 def test_unit_labels():
     assert Units(length="mm", force="N").line_force == "N/mm"
     assert Units(length="mm").line_force == ""
+    assert Units(length="in", force="lbf").foundation == "lbf/in³"

@@ -116,6 +116,7 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
     "Fillets, tangents and mirrors": [
         ("    - {name: left", "    - {fillet: 30}\n    - {name: left"),
         ("    - {name: left", "    - {fillet: big}\n    - {name: left"),
+        ("    - {name: left", "    - {kind: fillet, radius: 3}\n    - {name: left"),
         ("start: [0, 20], elements: 2}", "start: [0, 20], elements: 2, tangent: both}"),
         ("{name: left, start: [0, 20],", "{name: left, tangent: both,"),
         ("  outer:", "  mirror: {x: 0, y: 0}\n  outer:"),
@@ -135,6 +136,7 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
         ("  top: {pressure: 3}", "  top: {pressure: 3}\n  right: {spring: {stiffness: 50}}"),
         ("  top: {pressure: 3}", "  top: {pressure: 3}\n  right: {spring: {normal: 0}}"),
         ("{pressure: 3}", "{spring: {normal: 5}, displacement: {y: 0}}"),
+        ("  top: {pressure: 3}", "  top: {pressure: 3}\n  right: {spring: {normal: 5 MPa}}"),
         ("{conditions: {top: {pressure: 1}}}", "{conditions: {top: {spring: {normal: 1}}}}"),
         ("conditions:\n", "spring: {bottom: 5}\nconditions:\n"),
         ("{pressure: 3}", "{force: {y: -120, at: 3}}"),

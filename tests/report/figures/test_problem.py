@@ -13,6 +13,7 @@ from drawings import (
     strokes,
 )
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.path import Path as Outline
@@ -27,6 +28,7 @@ from bemcontact.problems import DeflectedContour, Problem
 from bemcontact.report import figures
 from bemcontact.report.figures.page import GREY
 from bemcontact.report.figures.problem import draw_tools, fills, polygons_of
+from bemcontact.report.figures.symbols import COIL
 
 
 def test_each_edge_is_named_and_no_name_covers_another(problem: Problem):
@@ -49,6 +51,29 @@ def test_conditions_are_written_at_their_edges():
     assert told["right"] == ["$t_x$ = -2 MPa", "$t_y$ = 0"]
     assert told["left"] == ["may touch in wall"]
     assert told["hole"] == []
+
+
+def test_springs_are_drawn_outside_the_body_with_their_stiffness():
+    """Across the edge and along it, eight of each at most, on the outer side of the edge."""
+    stiff = {"normal": 50.0, "tangent": 10.0, "x": 2.0}
+    problem = block_in_a_corner().with_value("conditions.right", {"spring": stiff})
+    axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
+    (told,) = [text.get_text().split("\n")[1:] for text in axes.texts if text.get_text().startswith("right")]
+    assert told == ["springs across it 50 N/mm³", "springs along it 10 N/mm³", "springs along x 2 N/mm³"]
+    coils = [
+        line
+        for collection in axes.collections
+        if isinstance(collection, LineCollection)
+        for line in collection.get_segments()
+        if len(line) == len(COIL)
+    ]
+    edge = problem.edge("right")
+    right = edge.points(np.array([0.5]))[0, 0]
+    across, along = ([line for line in coils if abs(np.ptp(line, axis=0)).argmax() == axis] for axis in (0, 1))
+    assert len(coils) == 3 * len(along)
+    assert len(across) == 2 * len(along)  # those along x are across this edge too
+    assert 2 <= len(along) <= 8
+    assert all(line[:, 0].min() > right - 1e-9 * problem.size for line in coils)
 
 
 def test_mesh_passes_through_all_nodes(problem: Problem):
