@@ -187,13 +187,17 @@ class ContactPoints:
     def zone_of_share(self) -> IntArray:
         """Number of the zone of each share of a point, an (element, local node) pair: that of its element.
 
-        A node between two zones on one face is a point of the first of them, and acts on the elements of both.
+        A node between two zones on one face is a point of the first of them, and acts on the elements of both. The
+        last node that is turned to the surface of a zone acts on the element beyond, which may be one of another zone
+        that has a point at this node too.
         """
         zones = self.zone[self.point]
-        middle = np.zeros((max(self.zone, default=0) + 1, len(self.mesh.elements)), bool)
-        middle[zones[self.local == 1], self.element[self.local == 1]] = True
-        own = middle[zones, self.element] | ~middle[:, self.element].any(axis=0)
-        return np.where(own, zones, middle[:, self.element].argmax(axis=0))
+        has = np.zeros((max(self.zone, default=0) + 1, len(self.mesh.elements), 3), bool)
+        has[zones, self.element, self.local] = True
+        middle = has[:, self.element, 1]
+        other = middle.argmax(axis=0)
+        own = middle[zones, np.arange(len(zones))] | ~middle.any(axis=0) | has[other, self.element, self.local]
+        return np.where(own, zones, other)
 
     def tributary_by_zone(self, zones: int) -> Array:
         """(zones, n) [L]: the parts of the tributary lengths in each zone, negative with the sides exchanged."""

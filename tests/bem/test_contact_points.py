@@ -8,7 +8,7 @@ from bodies import arc, even, mesh_of
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from bemcontact import solve
+from bemcontact import problem, solve
 from bemcontact.bem.body import body_of
 from bemcontact.problems import Polyline, Problem
 
@@ -255,3 +255,60 @@ def test_a_disk_between_two_plates_has_one_edge(start):
     floor, lid = (float(contact.weights[contact.zone == i] @ pressure[contact.zone == i]) for i in (0, 1))
     assert floor == pytest.approx(lid, rel=1e-6)
     assert floor > 0
+
+
+def sealed(quarter):
+    """A rubber block with rounded corners, the edges of which two planes share, squeezed in a groove; its symmetry."""
+    if quarter:
+        outer = [
+            {"name": "middle", "start": (2.5, 3.0)},
+            {"name": "right", "start": (5.0, 3.0)},
+            {"fillet": 0.5, "name": "right top"},
+            {"name": "top", "start": (5.0, 6.0), "end": (2.5, 6.0)},
+            {"name": "axis"},
+        ]
+        planes, conditions = ("right", "top"), {"middle": {"symmetry": "y"}, "axis": {"symmetry": "x"}}
+    else:
+        corners = {"bottom": (0.0, 0.0), "right": (5.0, 0.0), "top": (5.0, 6.0), "left": (0.0, 6.0)}
+        outer = [item for name, start in corners.items()
+                 for item in ({"name": name, "start": start}, {"fillet": 0.5, "name": f"after {name}"})]  # fmt: skip
+        planes, conditions = ("bottom", "right", "top", "left"), {}
+    surfaces = {
+        "bottom": ((0.0, 0.0), (0, 1)), "right": ((5.2, 0.0), (-1, 0)), "top": ((0.0, 6.0), (0, -1)),
+        "left": ((-0.2, 0.0), (1, 0)),
+    }  # fmt: skip
+    return problem({
+        "name": "seal",
+        "material": {"young_modulus": 5.0, "poisson_ratio": 0.48},
+        "boundary": {"outer": outer},
+        "conditions": conditions,
+        "contact_zones": {
+            name: {"surface": {"kind": "plane", "point": surfaces[name][0], "normal": surfaces[name][1]}}
+            for name in planes
+        },
+        "tools": {"lid": {"zones": "top", "displacement": {"y": -0.3 if quarter else -0.6}}},
+    })  # fmt: skip
+
+
+def test_the_zones_of_one_edge_have_their_own_pressures_at_a_node():
+    """The last point of one plane is a node of an element of the other one, whose pressure there is not overwritten.
+
+    Else meshes would seem to differ there however fine they are, and the search would end without an answer.
+    """
+    whole, quarter = solve(sealed(quarter=False)), solve(sealed(quarter=True))
+    assert whole.problem is not None
+    points = body_of(whole.problem).points
+    shares = np.column_stack([points.zone_of_share, points.element, points.local])
+    assert len(np.unique(shares, axis=0)) == len(shares)
+    assert whole.accuracy is not None
+    assert whole.accuracy.met
+    assert quarter.accuracy is not None
+    assert quarter.accuracy.met
+    error = whole.accuracy.worst + quarter.accuracy.worst
+    forces = [{name: np.hypot(*force) for name, force in result.forces.items()} for result in (whole, quarter)]
+    assert forces[0]["top"] == pytest.approx(forces[0]["bottom"], rel=1e-6)
+    for name in ("top", "right"):
+        assert forces[0][name] == pytest.approx(2 * forces[1][name], rel=error)
+    assert whole.peak is not None
+    assert quarter.peak is not None
+    assert whole.peak.pressure == pytest.approx(quarter.peak.pressure, rel=error)
