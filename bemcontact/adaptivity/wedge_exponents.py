@@ -19,13 +19,15 @@ import numpy as np
 
 from bemcontact.arrays import Array
 
-GRID = np.arange(0.01, 0.995, 0.005)
+GRID = tuple(np.arange(0.01, 0.995, 0.005).tolist())
 """Values of λ between which roots are looked for."""
 ROOT = 1e-9
 """Smallest singular value, over the largest, of equations that are singular."""
 EXACT = 1e-13
 """Accuracy of a root λ."""
-NEAR_ONE = np.arange(0.7, 1.305, 0.005)
+FINER = 33
+"""Values of λ at which the equations are looked at together on the way to a root."""
+NEAR_ONE = tuple(np.arange(0.7, 1.305, 0.005).tolist())
 """Values of λ between which roots change the pressure so slowly that meshes do not tell where it ends."""
 RESONANT = 1e-6
 """Largest |λ - 1| at which the pressure is computed as that of a logarithm."""
@@ -109,12 +111,13 @@ def stress_is_infinite(start: float, angle: float, faces: tuple[Face, Face], poi
     return bool(_roots((start, angle, faces, poisson_ratio, None), GRID))
 
 
-def _roots(wedge: "Wedge", grid: Array) -> list[float]:
+@lru_cache(maxsize=256)
+def _roots(wedge: "Wedge", grid: tuple[float, ...]) -> tuple[float, ...]:
     """Values of λ, between those of a grid, where the equations are singular."""
-    sizes = _singular(wedge, grid)
+    sizes = _singular(wedge, np.array(grid))
     low = 1 + np.flatnonzero((sizes[1:-1] <= sizes[:-2]) & (sizes[1:-1] < sizes[2:]))
-    powers = [_least(wedge, float(grid[i - 1]), float(grid[i + 1])) for i in low]
-    return [power for power in powers if _singular(wedge, np.array(power)) <= ROOT]
+    powers = [_least(wedge, grid[i - 1], grid[i + 1]) for i in low.tolist()]
+    return tuple(power for power in powers if _singular(wedge, np.array(power)) <= ROOT)
 
 
 class SlowChange(NamedTuple):
@@ -185,14 +188,10 @@ Wedge = tuple[float, float, tuple[Face, Face], float, OppositeWedge | None]
 
 def _least(wedge: Wedge, low: float, high: float) -> float:
     """Where the equations are most nearly singular between two λ; the smallest singular value is like |λ - λ0|."""
-    ratio = (np.sqrt(5) - 1) / 2
     while high - low > EXACT:
-        one, other = high - ratio * (high - low), low + ratio * (high - low)
-        nearer, farther = _singular(wedge, np.array([one, other]))
-        if nearer <= farther:
-            high = other
-        else:
-            low = one
+        powers = np.linspace(low, high, FINER)
+        least = int(np.clip(_singular(wedge, powers).argmin(), 1, FINER - 2))
+        low, high = float(powers[least - 1]), float(powers[least + 1])
     return (low + high) / 2
 
 
