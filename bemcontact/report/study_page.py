@@ -153,7 +153,9 @@ def study_summary(study: StudyTable, seconds: float, place: str | None = None) -
     for axis in study.axes:
         count, words = _extent(axis.values)
         axes.add_row(*map(Text, (axis.name, f"{count}: {words}")))
-    outputs = table_of("output", "smallest", "at", "largest", "at ")
+    holding = sum(row.holds is not False for row in study.rows)
+    which = "output" if holding == len(study.rows) else f"output of the {holding} that hold"
+    outputs = table_of(which, "smallest", "at", "largest", "at ")
     for name in study.columns:
         outputs.add_row(*map(Text, (name, *_range_of(study, name))))
     shown = list_of_facts()
