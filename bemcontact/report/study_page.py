@@ -154,7 +154,7 @@ def study_summary(study: StudyTable, seconds: float, place: str | None = None) -
         count, words = _extent(axis.values)
         axes.add_row(*map(Text, (axis.name, f"{count}: {words}")))
     holding = sum(row.holds is not False for row in study.rows)
-    which = "output" if holding == len(study.rows) else f"output of the {holding} that hold"
+    which = "output" if holding == len(study.rows) else f"output of the {holding} that hold{'s' * (holding == 1)}"
     outputs = table_of(which, "smallest", "at", "largest", "at ")
     for name in study.columns:
         outputs.add_row(*map(Text, (name, *_range_of(study, name))))

@@ -133,7 +133,8 @@ def chosen(outputs: Sequence[str] | None, problem: Problem) -> tuple[str, ...]:
             raise OptionError(unknown_word("output", name, _known()))
         if point and quantity in OF_ZONES and owner.split("[")[0] not in problem.zones:
             if f"{quantity}_{owner}" in OF_ZONES:
-                raise OptionError(f"output {name}: write {quantity}_{owner}, or {quantity}_{owner}.{[*problem.zones][0]}")
+                part = f"{quantity}_{owner}"
+                raise OptionError(f"output {name}: write {part}, or {part}.{next(iter(problem.zones))}")
             raise OptionError(f"output {name}: {unknown_word('contact zone', owner, problem.zones)}")
     return tuple(dict.fromkeys(part for name in names for part in ALL_OF.get(name, (name,))))
 

@@ -62,7 +62,7 @@ def test_numbers_that_do_not_hold_are_in_no_range():
         console.print(study_summary(study(GOOD, second), 1.0))
         words = console.export_text()
         assert "900" not in words
-        assert "output of the 1 that hold" in words
+        assert "output of the 1 that holds" in words
 
 
 def test_the_page_has_each_number_with_its_error_and_no_markup_of_the_user():

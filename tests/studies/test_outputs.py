@@ -68,7 +68,7 @@ def test_each_output_of_a_result_can_be_chosen():
         (["peek"], "unknown output 'peek'; did you mean 'peak'?"),
         (["peak.foot"], "unknown output 'peak.foot'"),
         (["force.leftt"], "unknown contact zone 'leftt'"),
-        (["force.y"], "output force.y: write force_y, or force_y.left"),
+        (["force.y"], "output force.y: write force_y, or force_y.drum"),
         ([], "no output is named"),
         ("peak", "list of texts"),
     ],
