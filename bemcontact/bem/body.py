@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bemcontact.arrays import Array, nonnegative_residual
+from bemcontact.arrays import Array, BoolArray, nonnegative_residual
 from bemcontact.bem.bonds import BondedPoints
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
@@ -197,11 +197,12 @@ class Body:
         return np.where(abs(R) > UNSEEN, R, 0.0), np.zeros_like(load) if none else load / largest
 
     @cached_property
-    def idle_motion(self) -> str | None:
+    def idle_motion(self) -> tuple[str, BoolArray] | None:
         """A motion that opens gaps and closes none, and in which the loads do no work; None if there is none.
 
-        Its amplitude is not determined. Among the motions a with R a >= 0 in which the loads do no work, it is the one
-        nearest to Rᵀ1, which opens all gaps: a residual of nonnegative least squares (Moreau).
+        Its amplitude is not determined, and nothing presses on the points (n,) that it opens. Among the motions a with
+        R a >= 0 in which the loads do no work, it is the one nearest to Rᵀ1, which opens all gaps: a residual of
+        nonnegative least squares (Moreau).
         """
         R, load = self.relative_load
         if not load.size or (load.size == 1 and load.any()):
@@ -212,8 +213,9 @@ class Body:
         part = nonnegative_residual(rates.T, -rates.sum(axis=0))
         size = np.linalg.norm(part)
         motion = workless @ part / max(size, UNSEEN)
-        idle = size > UNSEEN and (R @ motion).max() > IDLE * abs(motion).max()
-        return self.seen.combined(motion[:, None]).describe()[0] if idle else None
+        opened = R @ motion > IDLE * abs(motion).max()
+        idle = size > UNSEEN and opened.any()
+        return (self.seen.combined(motion[:, None]).describe()[0], opened) if idle else None
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -372,7 +374,7 @@ def _check_support(body: Body) -> None:
     pull = nonnegative_residual(R.T, -load)
     if np.linalg.norm(pull) > BALANCED:
         raise ProblemError(_pull(body, body.seen.combined(pull[:, None])))
-    if not load.any() and body.idle_motion is not None:
+    if not load.any() and (idle := body.idle_motion) is not None and idle[1].all():
         raise ProblemError(
             f"contact holds {_against(body.seen)}, but no load presses it onto its support, so that its position "
             "is not determined; apply a load, or prescribe a displacement"

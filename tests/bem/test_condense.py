@@ -69,6 +69,29 @@ def test_free_motions_are_counted(conditions, zones, seen, unseen, idle):
     assert (body.idle_motion is not None) == idle
 
 
+@pytest.mark.parametrize("formulation", ["complementarity", "qp1", "qp2", "qp3"])
+@pytest.mark.parametrize("gap", [0.1, 0.0, -0.2])
+def test_a_block_is_squeezed_beside_a_wall(gap, formulation):
+    """No load holds it along the lid: p = E / (1 - ν²) times the squeeze over the height, wherever the wall is drawn."""
+    zones = {
+        "base": (["bottom"], PLANE), "lid": (["top"], {"kind": "plane", "point": (0, 1), "normal": (0, -1)}),
+        "wall": (["left"], {**WALL, "point": (-gap, 0)}),
+    }  # fmt: skip
+    result = solve(block({}, zones, tools={"lid": {"zones": "lid", "displacement": {"y": -0.01}}}), formulation)
+    assert result.certified
+    p, zone = result.solution.pressure, result.contact.zone
+    assert p[zone < 2] == pytest.approx(1000 / (1 - 0.3**2) * 0.01, rel=1e-6 if formulation == "qp3" else 1e-9)
+    assert p[zone == 2] == pytest.approx(0.0, abs=1e-6)
+    assert result.solution.undetermined == ("translation along (1, 0)",)
+
+
+def test_a_block_that_nothing_squeezes_or_loads_has_no_position():
+    """All contact ends when it is moved off, even where a surface is drawn inside it."""
+    for zones in (None, {"base": (["bottom"], PLANE), "wall": (["left"], {**WALL, "point": (0.1, 0)})}):
+        with pytest.raises(ProblemError, match="no load presses it"):
+            body_of(block({}, zones))
+
+
 def test_uniform_pressure_on_a_block_is_exact():
     """Constant stress: p = 10 at every point, also if only contact holds the body."""
     for conditions in ({"top": {"pressure": 10}}, {"top": {"pressure": 10}, "left": {"displacement": {"x": 0}}}):
