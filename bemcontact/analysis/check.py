@@ -91,7 +91,7 @@ def _interference(problem: Problem, smallest_gaps: Mapping[str, float]) -> Itera
 def _idle(body: Body) -> Iterator[str]:
     """Note a motion that no load works in."""
     if (idle := body.idle_motion) is not None:
-        yield f"the loads do no work in the {idle[0]}, which only opens gaps: it is not determined"
+        yield f"the loads do no work in the {idle}, which only opens gaps: it is not determined"
 
 
 def _smallest_gap(body: Body, zone: int) -> float:

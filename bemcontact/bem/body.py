@@ -55,6 +55,8 @@ WEDGE = 0.02
 """Part of a rigid normal along which conditions leave a point free, up to which the point slides into a wedge."""
 MANY = 3
 """Motions held at zero up to which each has a note of its own."""
+ROUND_OFF = 1e-14
+"""Normal displacement, over that of the motion, of a point that does not see it."""
 IDLE = 1e-3
 """Least normal displacement, over that of the motion, of a motion that opens gaps. As a roller turns about nearly its
 middle, gaps on a coarse mesh seem to open, by less."""
@@ -172,8 +174,9 @@ class Body:
 
     @cached_property
     def seen_motion(self) -> Array:
-        """R (n, k): change of the gaps in the seen motions."""
-        return self.normal_motion(self.seen)
+        """R (n, k): change of the gaps in the seen motions, without round-off."""
+        R = self.normal_motion(self.seen)
+        return np.where(abs(R) > ROUND_OFF, R, 0.0)
 
     @cached_property
     def seen_load(self) -> Array:
@@ -197,12 +200,11 @@ class Body:
         return np.where(abs(R) > UNSEEN, R, 0.0), np.zeros_like(load) if none else load / largest
 
     @cached_property
-    def idle_motion(self) -> tuple[str, BoolArray] | None:
+    def idle_motion(self) -> str | None:
         """A motion that opens gaps and closes none, and in which the loads do no work; None if there is none.
 
-        Its amplitude is not determined, and nothing presses on the points (n,) that it opens. Among the motions a with
-        R a >= 0 in which the loads do no work, it is the one nearest to Rᵀ1, which opens all gaps: a residual of
-        nonnegative least squares (Moreau).
+        Its amplitude is not determined. Among the motions a with R a >= 0 in which the loads do no work, it is the one
+        nearest to Rᵀ1, which opens all gaps.
         """
         R, load = self.relative_load
         if not load.size or (load.size == 1 and load.any()):
@@ -210,12 +212,8 @@ class Body:
         workless = np.linalg.svd(load[None, :])[2][1:].T if load.any() else np.eye(load.size)
         rates = R @ workless
         rates[abs(rates) <= UNSEEN] = 0.0
-        part = nonnegative_residual(rates.T, -rates.sum(axis=0))
-        size = np.linalg.norm(part)
-        motion = workless @ part / max(size, UNSEEN)
-        opened = R @ motion > IDLE * abs(motion).max()
-        idle = size > UNSEEN and opened.any()
-        return (self.seen.combined(motion[:, None]).describe()[0], opened) if idle else None
+        part, opened = _opening(rates)
+        return self.seen.combined((workless @ part)[:, None]).describe()[0] if opened.any() else None
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -374,11 +372,32 @@ def _check_support(body: Body) -> None:
     pull = nonnegative_residual(R.T, -load)
     if np.linalg.norm(pull) > BALANCED:
         raise ProblemError(_pull(body, body.seen.combined(pull[:, None])))
-    if not load.any() and (idle := body.idle_motion) is not None and idle[1].all():
+    if load.size and not load.any() and _may_leave(R):
         raise ProblemError(
             f"contact holds {_against(body.seen)}, but no load presses it onto its support, so that its position "
             "is not determined; apply a load, or prescribe a displacement"
         )
+
+
+def _may_leave(rates: Array) -> bool:
+    """Whether motions with these changes (n, k) of gaps open all of them and close none."""
+    while len(rates):
+        opened = _opening(rates)[1]
+        if not opened.any():
+            return False
+        rates = rates[~opened]  # enough of this motion makes up for what others close of these
+    return True
+
+
+def _opening(rates: Array) -> tuple[Array, BoolArray]:
+    """The motion (k,) of those with rates (n, k) that closes no gap and is nearest to ratesᵀ1; which (n,) it opens.
+
+    It is a residual of nonnegative least squares (Moreau).
+    """
+    part = nonnegative_residual(rates.T, -rates.sum(axis=0))
+    part /= max(np.linalg.norm(part), UNSEEN)
+    size = abs(part).max(initial=0.0)
+    return part, (rates @ part > IDLE * size) & (size > UNSEEN)
 
 
 def _pull(body: Body, pull: FreeMotions) -> str:

@@ -151,6 +151,8 @@ def echelon(basis: Array) -> Array:
 
 UNSEEN = 1e-9
 """Largest normal displacement at contact points, relative to the motion's own, that counts as zero."""
+WALL = 3
+"""Least number of points with one normal that are those of a wall."""
 MIDDLE = 0.1
 """Distance over the radius up to which a point is the middle of a body."""
 BODY = "the body"
@@ -400,8 +402,39 @@ def free_motions(
         together = _null_vectors(basis @ both.T)
         alone = _null_vectors(together[: len(body)].T)
         seen, unseen = np.vstack([echelon(alone.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
-    of_seen, of_unseen = (replace(every, coefficients=_counterclockwise(own)) for own in (seen, unseen))
+    seen = _along_walls(_counterclockwise(seen), [change[:, :2] for change in changes])
+    of_seen, of_unseen = (replace(every, coefficients=own) for own in (seen, _counterclockwise(unseen)))
     return of_seen, of_unseen, replace(every, coefficients=apart)
+
+
+def _along_walls(motions: Array, normals: Sequence[Array]) -> Array:
+    """Motions (k, components) with the translations of a body between two walls along and across them, not along x, y.
+
+    So the body slides along them without any round-off that another surface would have to hold. `normals` are those of
+    all points (n, 2) for each body, zero where it has no part.
+    """
+    motions = motions.copy()
+    for number, own in enumerate(normals):
+        ways = np.eye(motions.shape[1])[3 * number : 3 * number + 2]
+        rows = [np.flatnonzero((abs(motions - way) <= UNSEEN).all(axis=1)) for way in ways]
+        across = _axis_of_walls(own[own.any(axis=1)])
+        if across is not None and all(len(found) == 1 for found in rows):
+            along = np.array([across[1], -across[0]])
+            motions[np.concatenate(rows)] = np.array([along, across]) @ ways
+    return motions
+
+
+def _axis_of_walls(normals: Array) -> Array | None:
+    """The upward normal (2,) of two opposite walls, from those of their points (n, 2); None if it is an axis."""
+    angles = np.mod(np.arctan2(normals[:, 1], normals[:, 0]), 2 * np.pi)
+    order = np.argsort(np.mod(angles, np.pi))
+    groups = np.split(order, np.flatnonzero(np.diff(np.mod(angles, np.pi)[order]) > UNSEEN) + 1)
+    both = [group for group in groups if min(np.bincount(angles[group] >= np.pi, minlength=2)) >= WALL]
+    if not both:
+        return None
+    widest = max(both, key=len)
+    across = normals[widest[0]] * np.sign(normals[widest[0], 1])
+    return across if abs(across).min() > UNSEEN else None
 
 
 def _at_bonds(bonds: BondedPoints, of_bodies: Sequence[RigidMotions]) -> Array:
