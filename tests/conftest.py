@@ -22,8 +22,8 @@ settings.register_profile("thorough", deadline=None, max_examples=2000)  # by ha
 settings.load_profile("repeatable")
 
 
-SLOW = 10.0
-"""Seconds of a test that should have the marker slow: twice the five of the marker, for a machine with other work."""
+SLOW = 5.0
+"""Seconds of a test that should have the marker slow: more than twice the two of the marker, for a busy machine."""
 
 
 @pytest.hookimpl(wrapper=True)

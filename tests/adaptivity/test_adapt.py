@@ -188,6 +188,7 @@ def test_a_block_on_a_floor_is_exact():
     assert judged.worst < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [1e-6, 1.0])
 def test_contact_that_narrows_without_end_has_an_answer_that_does_not_hold(size: float):
     """A frame turns by 0.001 until a face is flush with a wall, and a corner of it is held where it just touches."""

@@ -137,6 +137,7 @@ def stated(problem: Problem, elements: int) -> Problem:
     return Problem(**{**data, "accuracy": 0.01, "mesh": {"adapt": False}})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("elements", [4, 8, 16, 32])
 @pytest.mark.parametrize("case", [hertz_full, hertz_hundredth, cam_nose, partial_load_lifts_off, wave_light])
 def test_no_bar_of_a_coarse_mesh_is_smaller_than_the_error(case: Callable[[], Case], elements: int):
@@ -190,6 +191,7 @@ def force_of_the_rod() -> float:
     return fine.force(fine.answers[0], 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("accuracy", [1e-2, 3e-3, 1e-3])
 def test_errors_of_corners_and_of_other_elements_do_not_hide_each_other(accuracy: float):
     """The force of the rod is a quarter of the load, and the clamped corners make it too large, the others too small.
@@ -220,6 +222,7 @@ def test_the_force_that_statics_determines_hides_nothing():
     assert hidden_change(difference(half_disk(2000.0)), 0) < 1e-12
 
 
+@pytest.mark.slow
 def test_a_displacement_without_contact_hides_nothing_either():
     """A beam that is clamped at both ends bows under a temperature gradient, and does not reach the rod.
 

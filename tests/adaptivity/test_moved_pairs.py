@@ -70,6 +70,7 @@ def test_joints_that_are_nearly_opposite_to_each_other(clearance: float):
     assert result.certificate.smallest_eigenvalue > 0.01
 
 
+@pytest.mark.slow
 def test_a_path_has_the_pairs_of_its_end():
     """So its end is the answer to the problem there."""
     spec = in_hole(0, 0, 1.02)

@@ -98,6 +98,7 @@ def test_a_block_that_slides_off_one_of_the_same_width_does_not_hold(order):
     assert "no surface" in result.penetration.words
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pressure", [1.0, 20.0])
 def test_a_hook_reaches_around_a_block(pressure: float):
     """Beside the corner of the hook, the side of the block faces the finger, though the face above is nearer.
@@ -117,6 +118,7 @@ def test_a_hook_reaches_around_a_block(pressure: float):
     assert np.negative(one.footprint.forces["c"]) == pytest.approx(other.footprint.forces["c"], rel=1e-3, abs=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("x", "y"), [(0.01, 0.01), (0.05, 0.02)])
 def test_a_block_is_drawn_apart_from_both_faces_of_a_step(x: float, y: float):
     """It has come to touch both, so that the forces are those of a block that is drawn there: its loads."""
@@ -129,6 +131,7 @@ def test_a_block_is_drawn_apart_from_both_faces_of_a_step(x: float, y: float):
         assert np.abs(result.footprint.forces["c"]) == pytest.approx([2, 4], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_tee_is_pulled_up_in_its_slot():
     """The corners of the slot stand in those of the tee, whose shoulders hold it, whichever body is the first."""
     slot = polygon(
@@ -147,6 +150,7 @@ def test_a_tee_is_pulled_up_in_its_slot():
         assert np.abs(result.footprint.forces["c"]) == pytest.approx([0, 10], abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_key_with_clearance_is_pushed_to_one_side():
     """Both orders have the pressed side, up to the corner of the key beside that of its way."""
     way = polygon(
@@ -160,6 +164,7 @@ def test_a_key_with_clearance_is_pushed_to_one_side():
         assert np.abs(result.footprint.forces["c"]) == pytest.approx([2, 4], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_corner_rises_along_the_wall_of_a_way_that_a_key_fills():
     """A couple tilts the key: its lower corner rises off the floor and presses on the wall, which ends at the floor.
 

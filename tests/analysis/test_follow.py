@@ -339,6 +339,7 @@ def test_factors_and_tools_are_followed_with_one_condensation(monkeypatch: pytes
     assert apart(path.end, condense(varied), path.at(1.0).pressure) <= 1e-10
 
 
+@pytest.mark.slow
 def test_each_breakpoint_has_error_bars_that_hold():
     """A roller comes down on a block: where contact begins the mesh of the end is coarse, and the bars say so.
 
@@ -375,6 +376,7 @@ def test_each_breakpoint_has_error_bars_that_hold():
             assert error <= mine[quantity].bar + bars[quantity].bar
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("to", [8000.0, -8000.0])
 def test_contact_leaves_the_place_of_an_infinite_pressure_on_a_path(to: float):
     """The punch tilts to either edge; at the end it stands on one, where the search has seen an infinite pressure."""
@@ -385,6 +387,7 @@ def test_contact_leaves_the_place_of_an_infinite_pressure_on_a_path(to: float):
     assert all(found.breakpoint_bars)
 
 
+@pytest.mark.slow
 def test_a_path_needs_no_variant_that_fits_its_mesh():
     """The variants of a model state other meshes of the same edges, which a mesh that is found contradicts."""
     beam = bemcontact.load(MODELS / "gallery" / "beam_on_two_supports.yaml").with_value("accuracy", 0.1)
@@ -396,6 +399,7 @@ def test_a_path_needs_no_variant_that_fits_its_mesh():
     )
 
 
+@pytest.mark.slow
 def test_of_a_stated_mesh_no_bar_is_that_of_an_infinite_peak():
     """At the breakpoints as at the ends: no value for the peak, and the force to the accuracy of the mesh."""
     found = follow(on_eccentric_punch().with_value("accuracy", 0.01), "tools.punch.force.y", -2000.0, -1900.0)

@@ -136,6 +136,7 @@ def test_mirrored_and_in_other_units(elements: int):
     assert [peak.value for peak in found] == pytest.approx([found[0].value] * 4, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_finer_mesh_has_the_same_maximum():
     """On it more of the points from which searches begin lie along the hole, and lead to the boundary."""
     size, height = 4.5, 3.4
@@ -235,6 +236,7 @@ def test_dense_grid_has_no_larger_maximum(hole: tuple[float, float, float], radi
         assert largest.missing["shear below foot"] is NoPeak.TO_BOUNDARY
 
 
+@pytest.mark.slow
 def test_each_contact_of_a_roller_has_its_own_largest_shear():
     """Below each is Hertz's, with that of the disk between two forces, within 1 %; a third contact is open.
 

@@ -187,6 +187,7 @@ def strip(distance, size=1.0, radius=3.0):
     return Problem(**data)  # pyright: ignore[reportArgumentType]
 
 
+@pytest.mark.slow
 @settings(max_examples=2, deadline=None, phases=QUICK)
 @given(st.floats(0.02, 0.2), st.sampled_from([1e-3, 1.0, 1e3]))
 @example(0.1, 1.0)
@@ -205,6 +206,7 @@ def test_a_path_through_first_touch_is_proved(distance, size):
     assert path.path.pressure[-1] == pytest.approx(last.solution.pressure, abs=1e-9 * last.footprint.peak.pressure)
 
 
+@pytest.mark.slow
 @settings(max_examples=2, deadline=None, phases=QUICK)
 @given(st.floats(0.3, 4))
 @example(3.0)
@@ -249,6 +251,7 @@ def on_two_supports(push, radius, sole, *, size=1.0):
     )  # pyright: ignore[reportArgumentType]
 
 
+@pytest.mark.slow
 @settings(max_examples=4, deadline=None, phases=QUICK)
 @given(st.floats(-5, -2), st.floats(3, 11.9), st.sampled_from([-1, 1]), st.sampled_from([1e-3, 1e3]))
 @example(np.log10(0.008), 10.0, 1, 1.0)
@@ -313,6 +316,7 @@ def disc_on_planes(couple, slopes, *, turn=0.0, size=1.0, low=1.0, bore=0.0):
     )  # pyright: ignore[reportArgumentType]
 
 
+@pytest.mark.slow
 @settings(max_examples=3, deadline=None, phases=QUICK)
 @given(st.floats(-3, -2), st.sampled_from([(0,), (-25, 25)]), TURNS, st.sampled_from([1e-3, 1e3]),
        st.sampled_from([0.0, 10.0, 40.0]))  # fmt: skip

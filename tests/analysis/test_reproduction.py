@@ -20,6 +20,7 @@ def findings(item: PaperStudy, quantity: PaperQuantity, order: int = 0) -> dict[
     return {run.label: reading(statement, run.level, item.axis) for run in item.runs}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("paper", PROBLEMS, ids=lambda paper: paper.model)
 def test_numbers_are_those_of_a_run_of_its_own(paper):
     """By QP3 alone, which shares neither solver nor start with the direct solution that is shown."""

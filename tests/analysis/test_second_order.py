@@ -146,6 +146,7 @@ def test_a_strut_with_a_load_sideways_bends_by_more_and_a_tie_by_less(part: floa
     assert any("linear theory takes displacements too" in note for note in result.notes) is (off < LARGE)
 
 
+@pytest.mark.slow
 @settings(max_examples=5)
 @given(
     part=st.sampled_from([0.5, 1.5]), turn=st.sampled_from([0.0, 0.4, 2.0]), size=st.sampled_from([1e-3, 1.0, 1e4]),

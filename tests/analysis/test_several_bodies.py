@@ -454,6 +454,7 @@ def test_an_edge_of_which_a_part_may_touch_is_not_said_to_be_in_no_zone(down):
     assert mine.value == pytest.approx(its.value, rel=mine.bar + its.bar)
 
 
+@pytest.mark.slow
 def test_a_plane_without_ends_that_another_body_penetrates_may_be_a_rigid_body():
     """The upper block hangs over the lower one and bends down beside it, into the floor of the lower one alone."""
     bodies = {
@@ -536,6 +537,7 @@ def test_forces_of_contacts_are_not_summed_over_bodies():
     assert inside is None or f" in {inside.body}" in page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("load", "gap"), [(1e-3, -1e-5), (1e-3, 0.0)])
 def test_load_shares_of_a_bearing_with_rigid_rings(load, gap):
     """All rollers carry with an interference, the lower ones without; the half-width is 2e-4 of the radius.

@@ -475,6 +475,7 @@ contact_zones:
 """
 
 
+@pytest.mark.slow
 def test_qp3_finds_a_contact_that_is_small_beside_its_zone():
     """Lengths from 60 to 0.001 in one program: no scaling may make what is left of the objectives look small."""
     result = bemcontact.solve(bemcontact.loads(LEVER), "qp3")

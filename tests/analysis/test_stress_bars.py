@@ -28,6 +28,7 @@ ON_MESHES += [(name, "stated mesh") for name in ("bolt_in_plate", "gallery/rolli
 """Bars of a mesh that is found come from a coarser one, those of a stated mesh from a finer one."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "variant"), ON_MESHES)
 def test_bars_contain_finer_meshes(name: str, variant: str | None):
     """With elements a third as long the largest stresses differ by no more than the error bars."""

@@ -60,6 +60,7 @@ def over_hertz(lower: str, curvature: float, half_width: float) -> tuple[np.ndar
     return np.array(ends), np.array([bars["peak"], bars["end"]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("lower", "radius"), [(CYLINDER, 20.0), (GROOVE, -24.0)])
 def test_hertz(lower: str, radius: float):
     """Half-width and peak tend to those of Hertz, and are within 0.2 % of them for b/R = 0.03.

@@ -58,6 +58,7 @@ def certificate_of(contact: CondensedContact, solution: ContactSolution):
     return certify(contact, solution, residuals(contact, solution))
 
 
+@pytest.mark.slow
 def test_only_lonely_states_are_certified_and_the_bound_holds():
     """Of random indefinite problems some are certified: each has one state, and none that has two is certified.
 
@@ -139,6 +140,7 @@ PROOFS = {
 """Proofs without a definite compliance, and what each gives where it proves nothing."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("proof", "problem", "count", "least"),
     [
@@ -174,6 +176,7 @@ def test_each_proof_alone_proves_lonely_states_only(monkeypatch, proof, problem,
     assert several >= least[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("length", "elements"), [(500, 40), (800, 60), (1000, 60), (1500, 120)])
 def test_long_contact_of_a_slender_beam_is_certified(length: int, elements: int):
     """Under its weight on a floor, with one end pulled up: contact is half as long as the beam and longer."""
@@ -224,6 +227,7 @@ def test_slender_beam_is_certified_although_its_compliance_is_not_definite(ratio
     assert result.footprint.peak.pressure == pytest.approx(short.peak.pressure, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_contact_recedes_point_by_point_on_a_very_slender_beam():
     """175 steps of the active set: no fragments of contact are left where the ends rise."""
     result = solve(beam(200, 20), "complementarity")
@@ -285,6 +289,7 @@ def held_with_two_normals_at_each_node(rng: np.random.Generator) -> CondensedCon
     return CondensedContact.from_compliance(rows @ (A @ A.T + 0.1 * np.eye(6)) @ rows.T, q.ravel())
 
 
+@pytest.mark.slow
 def test_two_surfaces_at_each_node_of_a_held_body():
     """The pressure of one state is not certified if another has the same node pressed by the other surface.
 

@@ -97,6 +97,7 @@ def test_equations_are_solved_in_fractions():
     assert solved_exactly([*rows, [Fraction(1), Fraction(2), Fraction(4)]], 2, [Fraction(0)] * 2) is None
 
 
+@pytest.mark.slow
 @settings(max_examples=400)
 @given(st.integers(0, 10**9))
 @example(361)
@@ -188,6 +189,7 @@ def test_rows_that_are_parallel_up_to_a_thousandth_have_answers_that_stay(seed):
         assert (again.status, again.iterations) == (result.status, 0)
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(st.integers(0, 10**9))
 @example(939)

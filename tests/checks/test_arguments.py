@@ -269,6 +269,7 @@ def complaint(name: str, key: str, value: Any) -> str | None:
     return None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CALLS)
 def test_each_wrong_kind_of_argument_gets_an_answer_in_words(name: str, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(adapt, "MOST_UNKNOWNS", 300)  # the search for an error of 5e-324 ends early

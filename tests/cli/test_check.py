@@ -59,6 +59,7 @@ def test_check_starts_without_solvers(block: Path):
     assert answer.stderr == "[]\n"
 
 
+@pytest.mark.slow
 def test_bodies_that_are_free_in_several_ways_start_without_programs():
     """Small programs, and arcs of ellipses, need no part of SciPy of their own."""
     slow = tuple(f"scipy.{name}" for name in ("optimize", "sparse", "special", "interpolate"))
@@ -102,6 +103,7 @@ def test_condensed_problem_keeps_its_cases(tmp_path: Path):
     assert found.solution.pressure.max() == pytest.approx(200, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new"),
     [

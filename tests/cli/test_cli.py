@@ -138,6 +138,7 @@ def test_missing_letters_of_a_terminal_are_replaced(block: Path, command: str, e
     assert answer.stdout.startswith("???? on a table\n")
 
 
+@pytest.mark.slow
 def test_json_is_utf_8_on_any_terminal(block: Path):
     answer = in_a_process("solve", block, "--json", "-", PYTHONIOENCODING="cp1252", encoding="utf-8")
     assert json.loads(answer.stdout)["name"] == "block on a table"

@@ -47,6 +47,7 @@ def test_another_word_for_an_option_is_led_to_it(block: Path, command: str, give
     assert re.search(rf"No such option:? '?{given}'?.*{meant}", " ".join(answer.stderr.split()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
 @pytest.mark.parametrize("command", ["check", "solve"])
 def test_figures_are_written_by_their_ending(block: Path, tmp_path: Path, command: str, ending: str):
@@ -101,6 +102,7 @@ def test_an_interrupt_states_what_was_written_already(block: Path, monkeypatch: 
     assert not answer_file.exists()
 
 
+@pytest.mark.slow
 def test_an_interrupt_during_the_table_states_the_files(block: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("bemcontact.report.text.result_summary", interrupted)
     vtu, picture = block.with_name("boundary.vtu"), block.with_name("picture.svg")
@@ -180,6 +182,7 @@ def test_text_of_a_user_is_never_read_as_markup(tmp_path: Path):
     assert str(path) in answer.stderr
 
 
+@pytest.mark.slow
 def test_names_of_a_user_are_never_read_as_markup(block: Path):
     block.write_text(BLOCK.replace("block on a table", "'a :smile: $x$ block'").replace("foot", "foot $y_"))
     for command in ("solve", "check"):

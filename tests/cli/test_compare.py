@@ -155,6 +155,7 @@ def test_compare_judges_the_references_of_the_case():
     assert all(score["judged"] and score["holds"] for score in level["scores"])
 
 
+@pytest.mark.slow
 def test_all_load_cases_are_compared(tmp_path: Path):
     """Each formulation under each load case; one page; --refine needs one case."""
     press = Path(__file__).parents[2] / "models" / "gallery" / "body_between_two_tools.yaml"

@@ -71,6 +71,7 @@ def test_a_spec_is_read_from_standard_input():
     assert broken.stderr.startswith("error: standard input:1:5: ")
 
 
+@pytest.mark.slow
 def test_a_file_that_cannot_grow_is_named(tmp_path: Path):
     paths = [tmp_path / name for name in ("a.pdf", "a.png", "a.svg")]
     no_modules = {"PYTHONDONTWRITEBYTECODE": "1"}  # Python would write compiled modules that are cut off, and stay
@@ -80,6 +81,7 @@ def test_a_file_that_cannot_grow_is_named(tmp_path: Path):
     assert [*tmp_path.iterdir()] == []
 
 
+@pytest.mark.slow
 def test_help_and_schemas_are_the_same_where_python_removes_docstrings():
     commands = ["--help", "solve --help", "schema", "schema --result", "schema --reproduction"]
     with_them, without = (in_one_process(*commands, flags=flags) for flags in ((), ("-OO",)))
@@ -94,6 +96,7 @@ def test_little_memory_is_said_before_any_work():
     assert ended.stderr.startswith("failed: there is not enough memory (the limit of the address space")
 
 
+@pytest.mark.slow
 def test_no_warning_of_a_home_that_cannot_be_written(tmp_path: Path):
     figure = tmp_path / "a.png"
     ended = in_a_process("check", MODEL, "--figure", figure, HOME="/proc/x", MPLCONFIGDIR="/proc/x")

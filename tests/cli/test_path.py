@@ -71,6 +71,7 @@ def test_a_mesh_that_is_not_assessed_though_asked_has_a_status(tmp_path: Path, m
     assert_states(" ".join(told.stdout.split()), "Equations unique solution proved. … Mesh not assessed")
 
 
+@pytest.mark.slow
 def test_folder_gets_picture_table_and_numbers(tmp_path: Path):
     place = tmp_path / "path"
     for _ in range(2):  # the second one replaces the first

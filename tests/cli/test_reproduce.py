@@ -16,6 +16,7 @@ def run(*words: object) -> Result:
     return CliRunner().invoke(cli.app, [*map(str, words)], env={"COLUMNS": "100"})
 
 
+@pytest.mark.slow
 def test_it_runs_from_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(tmp_path)
     answer = run("reproduce", "--refine", "1", "--json", "-")

@@ -298,6 +298,7 @@ def test_json_of_all_cases_and_of_one():
     assert press["force_of_body"] == pytest.approx([0, 6000], abs=1e-9)
 
 
+@pytest.mark.slow
 def test_figure_of_all_cases(tmp_path: Path):
     assert run("solve", PRESS, "--figure", tmp_path / "all.png").exit_code == 0
     assert (tmp_path / "all.png").read_bytes().startswith(b"\x89PNG")
@@ -358,6 +359,7 @@ def test_out_writes_a_page_with_the_stress_asked_for(block: Path, tmp_path: Path
     assert "expected one of von_mises, max_shear, xx, yy, xy, zz, found 'mises'" in wrong.stderr
 
 
+@pytest.mark.slow
 def test_out_writes_one_page_for_all_load_cases(tmp_path: Path):
     answer = run("solve", PRESS, "--set", "accuracy=null", "--variant", "stated mesh", "--out", tmp_path / "all")
     assert answer.exit_code == 0, answer.stderr

@@ -76,6 +76,7 @@ def test_variants_can_be_varied():
     assert [row["values"]["variant"] for row in json.loads(answer.stdout)["rows"]] == ["paper", "stated mesh"]
 
 
+@pytest.mark.slow
 def test_a_folder_gets_page_tables_and_journal(tmp_path: Path):
     place = tmp_path / "study"
     for _ in range(2):  # the second one has all from the journal

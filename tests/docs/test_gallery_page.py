@@ -80,6 +80,7 @@ def test_a_table_of_errors_is_filled_in(gallery: ModuleType):
         gallery.filled("| `shrink_fit` | half-width | 9 % | 9 % |")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", [model for model in MODELS if model not in LONG])
 def test_accuracy_is_met_and_so_are_the_references(gallery: ModuleType, model: str):
     """On the mesh that is found, one for all load cases: no edge states elements."""

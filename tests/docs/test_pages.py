@@ -41,13 +41,9 @@ def settled(monkeypatch: pytest.MonkeyPatch, meshes_found_once: None):
         monkeypatch.setattr(name, followed_once)
 
 
-MANY_SOLUTIONS = {".docs/tutorials/loaded_tool.md", ".docs/how-to/paths.md", ".docs/validation/paper.md"}
-"""Pages with so many solutions that they take more than five seconds."""
-
-
 @pytest.mark.parametrize(
     "page",
-    [pytest.param(page, marks=[pytest.mark.slow] * (name(page) in MANY_SOLUTIONS)) for page in pages.pages()],
+    [pytest.param(page, marks=[pytest.mark.slow] * (name(page) != "README.md")) for page in pages.pages()],
     ids=name,
 )
 def test_blocks_run_and_print_what_is_shown(page: Path, tmp_path: Path):
@@ -88,6 +84,7 @@ def is_sound(command: str, folder: Path) -> bool:
     return False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", pages.pages(), ids=name)
 def test_commands_that_take_long_can_work(page: Path, tmp_path: Path):
     """Blocks of sh install, test or measure; each line is one that CI runs, or its commands are sound."""

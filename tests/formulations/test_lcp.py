@@ -107,6 +107,7 @@ def test_p_matrices_against_all_active_sets(seed):
     np.testing.assert_allclose(values(M, q, end.active)[0], solution_of_lcp(M, q), atol=1e-9)
 
 
+@pytest.mark.slow
 def test_no_row_is_violated_whatever_its_size():
     """Semidefinite problems with rows and columns of any size: a solution holds in each row, beside its own terms.
 

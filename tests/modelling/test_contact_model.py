@@ -236,6 +236,7 @@ def test_additions_that_contradict_each_other_are_infeasible(seed, n, motions, l
         assert model.solve(extra_constraints=added).status is Status.INFEASIBLE
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(seed=st.integers(0, 10**6), motions=st.sampled_from([0, 1, 3]), load=LIGHT, cost=st.floats(-3, 3))
 @example(seed=29, motions=3, load=10.0**-4.6, cost=0.1)

@@ -112,6 +112,7 @@ def test_shrink_fit(state: str, rigid: str):
     assert fine[key].difference < coarse[key].difference / 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gap", [0.0, 0.5, 0.75])
 def test_propped_beam(gap: float):
     """Beam theory is for slender beams: with 20 heights it is off by less than half of what it is with 10."""

@@ -110,6 +110,7 @@ def report(
     return place / page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("width", "dark"), [(380, True), (1200, False)], ids=["narrow and dark", "wide and light"])
 def test_the_page_is_drawn_whole_and_fits(chromium: Browser, report: Path, width: int, dark: bool):
     with opened(chromium, report, width=width, dark=dark) as (page, complaints):
@@ -145,6 +146,7 @@ def test_a_long_number_is_not_cut_on_a_telephone(chromium: Browser, written: Cal
     assert cut == 0
 
 
+@pytest.mark.slow
 def test_errors_in_the_browser_are_noticed(chromium: Browser, tmp_path: Path):
     """A page with a script that fails and a picture that is missing: without this the test above proves nothing."""
     bad = tmp_path / "bad.html"

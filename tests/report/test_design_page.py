@@ -35,6 +35,7 @@ def uncoupled() -> GapDesign:
     return design_gap([contact, replace(contact, initial_gap=contact.initial_gap / 2)], Relief(lower=0, upper=1.5))
 
 
+@pytest.mark.slow
 def test_the_folder_has_page_table_numbers_and_pictures(design: GapDesign, tmp_path: Path):
     for _ in range(2):  # the second one replaces the first
         folder.save_design(design, tmp_path / "design", BOUNDS)

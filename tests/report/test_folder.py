@@ -146,6 +146,7 @@ print(len(seen))
 """
 
 
+@pytest.mark.slow
 def test_a_killed_run_leaves_the_old_report_or_the_new_one(tmp_path: Path):
     """Killed at random moments of endless saving, each time page, numbers and spec are of one and the same run.
 
@@ -180,6 +181,7 @@ def test_all_files_of_a_result_are_written(name: str, written: Callable[[str], P
         folder.save(on_one_mesh(), place)
 
 
+@pytest.mark.slow
 def test_comparisons_under_load_cases_are_a_report(tmp_path: Path):
     """It may replace that of one load case, and the other way round."""
     folder.save(without_a_body(), tmp_path / "report")

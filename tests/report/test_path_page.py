@@ -45,6 +45,7 @@ def contents(place: Path) -> dict[str, bytes]:
     return {item.relative_to(place).as_posix(): item.read_bytes() for item in place.rglob("*") if item.is_file()}
 
 
+@pytest.mark.slow
 def test_the_page_needs_no_other_file_and_an_earlier_one_is_replaced(link: ParameterPath, tmp_path: Path):
     """What is written a second time is the same."""
     folder.save_path(link, tmp_path / "path", LINK, "name: <x>\n")

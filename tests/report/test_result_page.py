@@ -29,6 +29,7 @@ def together(text: str) -> str:
     return text.replace(" ", "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EACH)
 def test_the_page_is_whole_and_needs_nothing_else(name: str):
     results = EACH[name]()
@@ -82,6 +83,7 @@ def test_stress_that_is_infinite_is_told_before_its_picture_is_believed():
     assert 'id="stress"' not in render(condensed(), {}, None)
 
 
+@pytest.mark.slow
 def test_the_page_of_load_cases_has_one_picture_of_their_stress_before_its_table():
     """With the stress that was asked for in its caption, and the load cases in its text alternative."""
     drawn = {name: vector_graphic(it) for name, it in pictures_of(cases(), StressMeasure.MAX_SHEAR).items()}

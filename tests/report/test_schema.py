@@ -109,6 +109,7 @@ def of_each_kind() -> dict[str, list[Any]]:
     }
 
 
+@pytest.mark.slow
 def test_results_of_each_kind_are_what_their_schema_states():
     results = of_each_kind()
     assert {*results, "report", "reproduction"} == {*RESULTS}

@@ -28,6 +28,7 @@ def items():
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["problem", "result", "cases", "comparison", "path", "study"])
 def test_a_notebook_shows_a_picture_and_a_table_without_markup_of_the_user(name):
     page = items()[name]._repr_html_()

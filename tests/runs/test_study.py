@@ -73,6 +73,7 @@ def test_a_study_in_a_folder_solves_nothing_twice(tmp_path: Path, solved: list[i
     assert len(solved) == 9 + 6  # of another problem nothing is known
 
 
+@pytest.mark.slow
 def test_a_run_that_is_interrupted_anywhere_goes_on_to_the_same_table(tmp_path: Path, solved: list[int]):
     """An interrupt after each number of rows; at the end every member was solved once."""
     expected = bemcontact.study(CYLINDER, VARIED, ["peak"]).to_csv()

@@ -83,6 +83,7 @@ def test_large_texts_are_refused_soon(text, words):
     assert words in refused(text)
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9), st.booleans()), min_size=1, max_size=12))
 def test_any_graph_of_aliases_ends(graph):

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import chdir
 from pathlib import Path
 
+import pytest
 from command_line import BLOCK
 from typer.testing import CliRunner
 
@@ -337,6 +338,7 @@ def page(folder: Path) -> str:
     return re.sub(re.escape(str(folder.resolve())), "/folder", "\n\n".join(parts)) + "\n"
 
 
+@pytest.mark.slow
 def test_the_page_is_true(tmp_path: Path):
     assert page(tmp_path) == PAGE.read_text(encoding="utf-8")
 

@@ -34,6 +34,7 @@ def assert_same(row: MemberRow, expected: MemberRow) -> None:
             assert found == (None if wanted is None else pytest.approx(wanted, rel=rel, abs=ROUND_OFF * size)), name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("accuracy", [None, 0.01])
 def test_rows_of_members_that_share_are_those_of_solve(accuracy: float | None):
     """One factorization for all loads and gaps on each mesh, and for each modulus."""
@@ -62,6 +63,7 @@ def test_a_key_of_loads_that_changes_the_matrix_is_not_shared():
     assert found[0].outputs["peak"].value != pytest.approx(found[1].outputs["peak"].value, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_rows_of_load_cases_are_those_of_solve():
     for row in rows(study_plan(WEDGE, {"accuracy": [0.05]})):
         alone = bemcontact.solve(WEDGE.with_case(row.values["case"]).with_value("accuracy", row.values["accuracy"]))

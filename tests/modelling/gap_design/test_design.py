@@ -111,6 +111,7 @@ def peaks(state: CondensedContact, profiles: np.ndarray, touching: np.ndarray) -
     return result
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_no_random_profile_has_a_lower_peak(name):
     """A thousand of them: corners of the set of profiles, mixtures of corners, and mixtures with the design itself."""
@@ -415,6 +416,7 @@ def under_the_punch() -> StressOperator:
 CROWN = Relief(lower=0, upper=0.01, slope=0.004, curvature=0.004)
 
 
+@pytest.mark.slow
 def test_a_limit_of_stress_is_kept_by_a_solve_on_the_designed_surface():
     """To a relative 0.004, the largest slope, by which normals of the surface lean; the plain design is above it."""
     operator, limit = under_the_punch(), 95.0

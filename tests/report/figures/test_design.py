@@ -21,6 +21,7 @@ def design() -> GapDesign:
     return design_gap(contact, Relief(lower=0, upper=0.01, slope=0.003))
 
 
+@pytest.mark.slow
 def test_curves_are_those_of_the_design(design: GapDesign, tmp_path: Path):
     figure = figures.figure_of_design(design)
     above, below = figure.axes

@@ -32,6 +32,7 @@ def label(axes):
     return axes.get_xlabel(), axes.get_ylabel().partition("\n")[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "options", "labels"),
     [

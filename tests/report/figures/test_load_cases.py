@@ -60,6 +60,7 @@ def page_of(draw: Callable[[CaseResults], Figure], name: str) -> Figure:
     return page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 @pytest.mark.parametrize("draw", [figure_of_contacts, figure_of_stresses])
 def test_all_panels_have_equal_limits_and_sizes(name: str, draw):
@@ -148,6 +149,7 @@ def test_each_panel_marks_the_largest_stress_or_those_that_are_infinite():
         assert not [line for line in axes.lines if line.get_marker() == "o"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 @pytest.mark.parametrize("draw", [figure_of_contacts, figure_of_stresses, figures.figure_of])
 def test_titles_and_labels_lie_in_the_figure_and_apart(name: str, draw):

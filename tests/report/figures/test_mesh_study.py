@@ -80,6 +80,7 @@ def test_each_study_has_its_pictures():
         assert not {"problem", "deformed", "convergence"} & figures.figures_of(study()).keys()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("study", "again"),
     [(on_three_meshes, None), (of_many_settings, {"difference"}), (without_contact, {"pressure"})],

@@ -70,6 +70,7 @@ def test_no_line_goes_over_the_side_of_a_round_body_that_is_turned_away(zone: in
     assert np.ptp(piece.arc) == pytest.approx(length / 2, abs=2 * length / 32)  # an element to either side
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["long words " * 60, "x" * 900, "方块"])
 def test_long_and_foreign_names_fit(name: str, tmp_path: Path):
     problem = Problem(**{**block_in_a_corner().model_dump(), "name": name})

@@ -180,6 +180,7 @@ def texts_of(figure: Figure) -> str:
     return " ".join([*titles, *(text.get_text() for axes in figure.axes for text in axes.texts)])
 
 
+@pytest.mark.slow
 def test_infinite_pressures_are_cut_off_at_three_times_the_mean():
     """The mean is statics: 30 on 2 mm, and 10 for a third of the load."""
     one = on_a_punch().results["high"]
@@ -280,6 +281,7 @@ def on_few_elements(problem: Problem) -> Problem:
     return problem.with_values({"bodies": bodies, "accuracy": None})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", sorted(MODELS.rglob("*.yaml")), ids=lambda path: path.stem)
 def test_the_picture_of_each_model_can_be_drawn(path: Path):
     """Contact up to a clamp, all round a hole, of a slit and under load cases; the largest stress is in its colors."""
