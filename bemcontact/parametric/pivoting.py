@@ -122,14 +122,20 @@ class Tangent:
     @cached_property
     def _unresisted(self) -> Array:
         """An orthonormal basis (k, ·) of the motions that move no point of S."""
-        return self._still(self.strong)
+        return self.still(self.strong)
+
+    def idle_motions(self, change: Change) -> Array:
+        """An orthonormal basis (k, ·) of the motions that move no point of S, if the change does no work in them."""
+        free, load = self._unresisted, change.motion_load
+        works = np.abs(free.T @ load).max(initial=0.0) > UNCARRIED * np.linalg.norm(load)
+        return free[:, :0] if works else free
 
     @cached_property
     def open_motions(self) -> Array:
         """An orthonormal basis (k, ·) of the motions that move no point of S and W."""
-        return self._still(np.append(self.strong, self.weak))
+        return self.still(np.append(self.strong, self.weak))
 
-    def _still(self, points: IntArray) -> Array:
+    def still(self, points: IntArray) -> Array:
         """An orthonormal basis (k, ·) of the motions that move none of some points."""
         R = self.scaled.rigid_motions[points]
         k = R.shape[1]
@@ -295,8 +301,8 @@ def trail_along(scaled: ScaledContact, line: LinearChange, pressure: Array, ampl
         try:
             if motion.any():
                 block, following = None, _tipped(scaled, state, tangent, motion)
-            elif tangent.strong.size and tangent.open_motions.size:
-                following, loaded = _drifted(line, state, tangent)
+            elif (drift := _drift(line, state, tangent)) is not None:
+                following, loaded = drift
                 states.append(following)
                 touching.append(loaded)
                 block = None
@@ -341,18 +347,45 @@ def _next(line: LinearChange, s: float, block: ContactBlock) -> State:
     )
 
 
-def _drifted(line: LinearChange, state: State, tangent: Tangent) -> tuple[State, BoolArray]:
-    """Continue where contact leaves motions open: until a pressure is zero, or no position penetrates nothing any more.
+def _drift(line: LinearChange, state: State, tangent: Tangent) -> tuple[State, BoolArray] | None:
+    """Continue along motions that contact leaves open; None where it leaves none.
 
-    The pressures do not depend on the position. With it come the points in contact. `ProblemError` if there is no step.
+    Points of W may hold the body, or lie beside its way as a wall beside a squeezed body: where they do not go on to
+    hold it, they are the latter.
     """
-    scaled, ways = tangent.scaled, tangent.open_motions
+    if not tangent.strong.size:
+        return None
+    if tangent.open_motions.size:
+        return _drifted(line, state, tangent, tangent.open_motions)
+    idle = tangent.idle_motions(line.rate)
+    if not idle.size:
+        return None
+    try:
+        if not tangent.still(tangent.after(line.rate).points).size:
+            return None
+    except ProblemError:
+        pass
+    try:
+        return _drifted(line, state, tangent, idle)
+    except ProblemError:
+        return None
+
+
+def _drifted(line: LinearChange, state: State, tangent: Tangent, ways: Array) -> tuple[State, BoolArray]:
+    """Continue where motions (k, ·) are open: until a pressure is zero, or no position penetrates nothing any more.
+
+    The pressures do not depend on the position. With it come the points in contact. Points without pressure that these
+    motions move are not. `ProblemError` if there is no step.
+    """
+    scaled, rate = tangent.scaled, line.rate
     held = null_space(ways.T)
     seen, place = scaled.rigid_motions @ ways, ways.T @ state.amplitudes
+    loose = ~tangent.loaded & (np.abs(seen).max(axis=1) > RANK)
     fixed = replace(scaled, rigid_motions=scaled.rigid_motions @ held, motion_load=held.T @ scaled.motion_load)
-    (offset, load), rate = line.at(state.s), line.rate
+    offset, load = line.at(state.s)
     now, rate = Change(offset + seen @ place, held.T @ load), Change(rate.offset, held.T @ rate.motion_load)
-    block = Tangent.at(fixed, state.pressure, state.gap, held.T @ state.amplitudes, tangent.unique).after(rate)
+    gap = np.where(loose, np.inf, state.gap)
+    block = Tangent.at(fixed, state.pressure, gap, held.T @ state.amplitudes, tangent.unique).after(rate)
     touching = block.touching
     pressures, gaps, amplitudes = block.solve(now, rate)
     values, rates = np.where(touching, pressures, gaps)

@@ -428,3 +428,37 @@ def test_the_accuracy_of_a_path_is_that_of_its_problem_also_when_the_mesh_is_cut
     cut = mesh_study(ComparisonOptions(formulations=(FormulationName.QP1,)), problem, refine=(1, 2))
     told = [path.start_accuracy, path.end_accuracy, cut.finest.answer.accuracy]
     assert [(item.asked, item.met) for item in told] == [(asked, True)] * 3
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+def test_a_squeezed_block_bulges_beside_a_wall_and_is_moved_off_it(turn):
+    """Where the side has closed the gap to the wall, points under the round lid go on to close: as a solve finds it."""
+
+    def turned(x, y):
+        return [np.cos(turn) * x - np.sin(turn) * y, np.sin(turn) * x + np.cos(turn) * y]
+
+    corners = {"bottom": (0, 0), "right": (2, 0), "top": (2, 1), "left": (0, 1)}
+    lid = {"kind": "circle", "center": turned(1, 31), "radius": 30, "body": "outside"}
+    planes = {"bottom": ((0, 0), (0, 1)), "right": ((2.0005, 0), (-1, 0))}
+    (x, y), (mx, my) = turned(0.0, -1.0), turned(0.0, -39.0)
+    problem = bemcontact.problem({
+        "name": "beside a wall",
+        "material": {"young_modulus": 1000.0, "poisson_ratio": 0.3},
+        "boundary": {"outer": [{"name": k, "start": turned(*at), "elements": 8} for k, at in corners.items()]},
+        "contact_zones": {"top": {"edges": "top", "surface": lid}} | {
+            name: {"edges": name, "surface": {"kind": "plane", "point": turned(*at), "normal": turned(*normal)}}
+            for name, (at, normal) in planes.items()
+        },
+        "tools": {"lid": {"zones": "top", "force": {"x": x, "y": y}}},
+        "load_cases": {"more": {"tools": {"lid": {"force": {"x": mx, "y": my}}}}},
+        "mesh": {"adapt": False},
+    })  # fmt: skip
+    path = bemcontact.follow(problem, "load_cases.more", 1.0, start=0.0).path
+    assert path.complete
+    assert path.pivots > 2
+    whole = problem.with_value("tools.lid.force.x", x + mx).with_value("tools.lid.force.y", y + my)
+    end = bemcontact.solve(whole.model_copy(update={"load_cases": {}}))
+    pressure, wall = end.solution.pressure, end.contact.zone == 2
+    np.testing.assert_allclose(path.at(1.0).pressure, pressure, rtol=0, atol=1e-9 * pressure.max())
+    assert not pressure[wall].any()
+    assert end.solution.undetermined
