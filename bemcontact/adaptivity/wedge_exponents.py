@@ -27,7 +27,11 @@ EXACT = 1e-13
 """Accuracy of a root λ."""
 FINER = 33
 """Values of λ at which the equations are looked at together on the way to a root."""
-NEAR_ONE = tuple(np.arange(0.7, 1.305, 0.005).tolist())
+BESIDE_ONE = 0.005 / 1.5 ** np.arange(22)
+"""Distances from λ = 1, which is a root where the wedges may turn together, at which others may be close to it."""
+NEAR_ONE = tuple(np.concatenate([
+    np.arange(0.7, 0.9925, 0.005), 1 - BESIDE_ONE, [1.0], 1 + BESIDE_ONE[::-1], np.arange(1.01, 1.305, 0.005)
+]).tolist())  # fmt: skip
 """Values of λ between which roots change the pressure so slowly that meshes do not tell where it ends."""
 RESONANT = 1e-6
 """Largest |λ - 1| at which the pressure is computed as that of a logarithm."""

@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from bemcontact.adaptivity.wedge_exponents import (
     FREE,
     Face,
+    OppositeWedge,
     contact_face,
     slow_change,
     stress_is_infinite,
@@ -115,6 +116,43 @@ def test_near_a_right_angle_the_pressure_is_a_constant_and_a_slow_power(degrees,
     if abs(degrees) < 0.1 and abs(shear) > 0.1:
         slope = slow_change(0.0, pi / 2, (faces(0.0, pi / 2)[0], FREE), ratio, (0j, complex(shear * 1j))).slopes[0]
         assert change.at(0, 0.0, 0.5) == pytest.approx(slope * np.log(0.5), rel=0.01)
+
+
+def settlement(power, angle, ratio, shear_modulus):
+    """u_θ of a face of a wedge, over r^λ, where the pressure is r^(λ-1) on it: Airy's functions r^(λ+1) F(θ)."""
+    above, below = power + 1, power - 1
+    values = np.array([
+        [np.cos(above * at), np.sin(above * at), np.cos(below * at), np.sin(below * at)] for at in (0, angle)
+    ])  # fmt: skip
+    slopes = np.array([
+        [sign * power * part(power * at) for power in (above, below) for sign, part in ((-1, np.sin), (1, np.cos))]
+        for at in (0, angle)
+    ])  # fmt: skip
+    a = np.linalg.solve(np.vstack([values, slopes]), [-1 / (power * above), 0, 0, 0])
+    return (-above * a[1] - (power + 3 - 4 * ratio) * a[3]) / (2 * shear_modulus)
+
+
+@pytest.mark.parametrize("degrees", [89.5, 90.0, 90.2])
+@pytest.mark.parametrize("stiffness", [30.0, 70.0, 1000.0])
+def test_a_corner_on_an_elastic_plane_has_a_slow_power_however_close_to_one(degrees, stiffness):
+    """Beside it λ = 1 is a root too, as both bodies may turn together; between rigid and elastic they come together."""
+    angle, ratio = np.radians(degrees), 0.3
+    powers = 1 - np.geomspace(1e-5, 0.2, 4000)
+    both = np.array([settlement(at, angle, ratio, 1.0) + settlement(at, pi, ratio, stiffness) for at in powers])
+    turns = np.flatnonzero((both[1:] * both[:-1] < 0) & (abs(both[1:] - both[:-1]) < np.median(abs(both))))
+    below = OppositeWedge(-pi, pi, (FREE, contact_face(1j)), ratio, stiffness)
+    change = slow_change(0.0, angle, (contact_face(-1j), FREE), ratio, (0j, 0j, 0j, 0j), below)
+    if not len(turns):  # the pressure falls towards the corner
+        assert change is None or change.rate > 0
+        return
+    (turn,) = turns.tolist()
+    power = brentq(
+        lambda at: settlement(at, angle, ratio, 1.0) + settlement(at, pi, ratio, stiffness),
+        powers[turn], powers[turn + 1], xtol=1e-13,
+    )  # fmt: skip
+    assert change is not None
+    assert change.rate == pytest.approx(power - 1, rel=1e-6)
+    assert change.at(0, 1.0, 1e-3) == pytest.approx(1e-3 ** (power - 1), rel=1e-6)
 
 
 ROLLERS = Face(1.0, (False, True)), Face(1.0, (True, False))
