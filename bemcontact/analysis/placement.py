@@ -39,6 +39,8 @@ SMALL_COMPONENT = 0.15
 """Component of a force over the force from which its change is judged by itself, and not by the force.
 
 What the force of a tool prescribes does not change; the other component may, by far more than the force as a whole."""
+SMALL_CONTACT = 0.01
+"""Force of a contact over that of its zone from which it is judged by itself, and not by this part."""
 MOVES_ON = 0.8
 """Part of a motion by which a body moves on in the second solution, from which it is not held: the steps do not end.
 
@@ -202,11 +204,19 @@ def _slipped(
 def _pressed_length(contact: CondensedContact, pressed: BoolArray, i: int) -> float:
     """Length [L] of the unbroken stretch of contact around a pressed point."""
     own = np.flatnonzero(contact.run == contact.run[i])
-    own = own[np.argsort(contact.arc_position[own])]
-    stretch = np.cumsum(np.append(0, np.diff(pressed[own].astype(int)) != 0))
-    if np.isfinite(contact.run_length[contact.run[i]]) and pressed[own[[0, -1]]].all():
-        stretch[stretch == stretch[-1]] = 0  # across the seam of a closed run
+    stretch = _stretches(contact, pressed, own)
     return float(contact.weights[own[stretch == stretch[own == i]]].sum())
+
+
+def _stretches(contact: CondensedContact, pressed: BoolArray, own: IntArray) -> IntArray:
+    """Number of the unbroken stretch, pressed or open, of each of the points (k,) of a run."""
+    order = np.argsort(contact.arc_position[own])
+    along = np.cumsum(np.append(0, np.diff(pressed[own[order]].astype(int)) != 0))
+    if np.isfinite(contact.run_length[contact.run[own[0]]]) and pressed[own[order[[0, -1]]]].all():
+        along[along == along[-1]] = 0  # across the seam of a closed run
+    stretch = np.empty(len(own), int)
+    stretch[order] = along
+    return stretch
 
 
 def _overhangs(
@@ -252,21 +262,20 @@ def _changed(
 ) -> tuple[Penetration | None, tuple[str, ...]]:  # fmt: skip
     """Judge how the peak of each of some zones changes with the gaps and normals of the displaced places."""
     solved = again.status is Status.SOLVED
-    number, change = _peak_change(contact, zones, solution.pressure, again.pressure)
+    own, change = _peak_change(contact, zones, solution, again)
     if solved and abs(change) < noted(gaps.problem):
         return None, ()
     if solved and nearby is not None:
-        beyond = _peak_change(contact, zones, solution.pressure, again.pressure, nearby)
+        beyond = _peak_change(contact, zones, solution, again, nearby)
         if abs(beyond[1]) < WITHHELD:
-            return None, (_off_by_a_little(contact.zone_names[number], gaps.problem),)
-        number, change = beyond
-    own = np.flatnonzero(contact.zone == number)
-    zone, pressure = contact.zone_names[number], np.maximum(solution.pressure, again.pressure if solved else 0.0)[own]
-    i = int(own[np.argmax(pressure)])
-    motion = _motion_in(contact, moved, number, np.maximum(solution.pressure, again.pressure if solved else 0.0))
+            return None, (_off_by_a_little(contact.zone_names[contact.zone[own][0]], gaps.problem),)
+        own, change = beyond
+    pressure = np.where(own, np.maximum(solution.pressure, again.pressure if solved else 0.0), -1.0)
+    i = int(np.argmax(pressure))
+    zone, motion = contact.zone_names[contact.zone[i]], _motion_in(moved, own, pressure)
     effect = (
         f"with the gaps after this motion, the peak pressure there {'rises' if change > 0 else 'falls'} by "
-        f"{100 * abs(change):.2g} %{' of the largest' * (len(contact.zone_names) > 1)}"
+        f"{100 * abs(change):.2g} %{' of the largest' * bool(solution.pressure[own].max() < solution.pressure.max())}"
         if solved
         else "with the gaps after this motion, contact does not hold the body"
     )
@@ -321,13 +330,15 @@ def _forces_changed(
     gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution,
     again: ContactSolution, moved: Displaced,
 ) -> tuple[Penetration | None, tuple[str, ...]]:  # fmt: skip
-    """Judge how the force on each surface changes with the gaps and normals of the displaced places."""
+    """Judge how the force of each contact changes with the gaps and normals of the displaced places."""
     if again.status is not Status.SOLVED:
         return None, ()  # as is said of the peak
-    own = contact.weights_by_zone
+    zones, within = _contacts(contact, solution, again)
+    own = contact.weights_by_zone[zones] * within
     was = (own * solution.pressure) @ contact.normals
     is_now = (own * again.pressure) @ (contact.normals + moved.turn)
-    total = contact.lengths_by_zone @ solution.pressure
+    of_zone = contact.lengths_by_zone @ solution.pressure
+    total = np.maximum(abs(own) @ solution.pressure, SMALL_CONTACT * of_zone[zones])
     size = np.where(abs(was) >= SMALL_COMPONENT * total[:, None], abs(was), total[:, None])
     parts = abs(is_now - was) / np.where(size > 0, size, np.inf)
     alike = parts >= (1 - SAME) * parts.max()
@@ -335,10 +346,10 @@ def _forces_changed(
     part = float(parts[number, axis])
     if part < noted(gaps.problem):
         return None, ()
-    i = int(np.argmax(abs(own[number]) * solution.pressure))
-    zone = contact.zone_names[number]
-    motion = _motion_in(contact, moved, int(number), np.maximum(solution.pressure, again.pressure))
-    units = gaps.problem.units
+    both = abs(own[number]) * np.maximum(solution.pressure, again.pressure)
+    i = int(np.argmax(both))
+    zone, units = contact.zone_names[zones[number]], gaps.problem.units
+    motion = _motion_in(moved, within[number], both)
     gained = _vector(is_now[number] - was[number], units.line_force)
     words = (
         f"both sides of '{zone}' move by {_vector(motion, units.length)} against each other, which is "
@@ -350,8 +361,28 @@ def _forces_changed(
     if part < WITHHELD:
         return None, (f"{words}; error bars do not include this",)
     words = f"{words[0].upper()}{words[1:]}."
-    off = float(abs(moved.change[contact.zone == number]).max())
+    off = float(abs(moved.change[within[number]]).max())
     return _misfit(gaps, points, contact, i, Misfit.MOVED, off, 0.0, words), ()
+
+
+def _contacts(
+    contact: CondensedContact, solution: ContactSolution, again: ContactSolution
+) -> tuple[IntArray, BoolArray]:
+    """Zone (c,) and points (c, n) of each unbroken contact of one of two solutions or both; of one alone, the zone.
+
+    What one contact gains another one of its zone may lose, as both walls of a groove do.
+    """
+    pressed, zones, within = (solution.pressure > 0) | (again.pressure > 0), list[int](), list[BoolArray]()
+    for number in range(len(contact.zone_names)):
+        own, found = contact.zone == number, list[BoolArray]()
+        for run in np.unique(contact.run[own]).tolist():
+            at = np.flatnonzero(contact.run == run)
+            stretch = _stretches(contact, pressed, at)
+            found += [np.isin(np.arange(len(own)), at[stretch == one]) for one in np.unique(stretch[pressed[at]])]
+        found = found if len(found) > 1 else [contact.lengths_by_zone[number] != 0]
+        zones += [number] * len(found)
+        within += found
+    return np.array(zones), np.array(within)
 
 
 def _of_component(part: float, component: float, size: float) -> str:
@@ -379,15 +410,22 @@ def _places_changed(
 
 
 def _peak_change(
-    contact: CondensedContact, zones: Sequence[str], before: Array, after: Array, nearby: Array | None = None
-) -> tuple[int, float]:
-    """One of the zones, whose peak changes most, and the change over the largest peak; beyond the peaks nearby."""
-    own = contact.zone == np.arange(len(contact.zone_names))[:, None]
-    was, is_now = (np.where(own, pressure, 0.0).max(axis=1, initial=0.0) for pressure in (before, after))
-    changes = (is_now - (was if nearby is None else np.clip(is_now, *nearby))) / before.max()
-    changes[[name not in zones for name in contact.zone_names]] = 0.0
+    contact: CondensedContact, zones: Sequence[str], before: ContactSolution, after: ContactSolution,
+    nearby: Array | None = None,
+) -> tuple[BoolArray, float]:  # fmt: skip
+    """Points (n,) of the contact in one of the zones whose peak changes most, and the change over the largest peak.
+
+    Where the peaks of the zones nearby on a path are known, it is the zone, and the change beyond these.
+    """
+    of, own = _contacts(contact, before, after)
+    if nearby is not None:
+        of = np.arange(len(contact.zone_names))
+        own = contact.zone == of[:, None]
+    was, is_now = (np.where(own, item.pressure, 0.0).max(axis=1, initial=0.0) for item in (before, after))
+    changes = (is_now - (was if nearby is None else np.clip(is_now, *nearby))) / before.pressure.max()
+    changes[[contact.zone_names[number] not in zones for number in of.tolist()]] = 0.0
     number = int(np.argmax(abs(changes)))
-    return number, float(changes[number])
+    return own[number], float(changes[number])
 
 
 def _off_by_a_little(zone: str, problem: Problem) -> str:
@@ -399,9 +437,9 @@ def _off_by_a_little(zone: str, problem: Problem) -> str:
     )
 
 
-def _motion_in(contact: CondensedContact, moved: Displaced, zone: int, pressure: Array) -> Array:
-    """Motion (2,) [L] of the point of a zone whose pressure (n,) times motion is largest."""
-    weight = np.where(contact.zone == zone, pressure, -1.0) * np.hypot(*moved.motion.T)
+def _motion_in(moved: Displaced, within: BoolArray, pressure: Array) -> Array:
+    """Motion (2,) [L] of that of some points (n,) whose pressure times motion is largest."""
+    weight = np.where(within, pressure, -1.0) * np.hypot(*moved.motion.T)
     return moved.motion[int(np.argmax(weight))]
 
 
