@@ -20,6 +20,8 @@ HELD = 1e-9
 UNSPRUNG = 1e-12
 """Stiffness in one direction, relative to that across it, that is round-off."""
 
+SLIGHT = 1e-3
+"""Component of a motion over all of it that does not name it."""
 SIDEWAYS = 0.01
 """Component of a unit vector from which it is named."""
 
@@ -132,14 +134,19 @@ def _stretched(motions: RigidMotions, mesh: Mesh, stiffness: Array) -> Array:
 
 
 def echelon(basis: Array) -> Array:
-    """Row echelon form of a basis (k, components), each row of unit length: translations along the axes come first."""
+    """Row echelon form of a basis (k, components), each row of unit length: translations along the axes come first.
+
+    A component that is `SLIGHT` in all rows that are left is no pivot: division by it would lose digits. A ring that
+    spins about its middle has such a translation, for the middle of its nodes is beside it.
+    """
     rows = basis.copy()
     row = 0
     for column in range(basis.shape[1]):
         if row == len(rows):
             break
-        pivot = row + int(abs(rows[row:, column]).argmax())
-        if abs(rows[pivot, column]) < 1e-9:
+        parts = abs(rows[row:, column]) / np.linalg.norm(rows[row:], axis=1)
+        pivot = row + int(parts.argmax())
+        if parts.max() < SLIGHT:
             continue
         rows[[row, pivot]] = rows[[pivot, row]]
         rows[row] /= rows[row, column]

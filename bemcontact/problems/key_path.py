@@ -48,7 +48,8 @@ NAMED: Mapping[str | int, str] = {
 def existing_path(data: Any, path: KeyPath) -> KeyPath:
     """Follow a path through the data of a problem, and replace names of list entries by their positions.
 
-    Keys that are not stated are kept, for they may have defaults. `ProblemError` if the path leads into a value without
+    A key of the only entry of a list leads to it, for a list of one may be written as its entry. Keys that are not
+    stated are kept, for they may have defaults. `ProblemError` if the path leads into a value without
     entries, or to an entry that a list or one of the `NAMED` mappings does not have.
     """
     whole: Any = data
@@ -57,8 +58,11 @@ def existing_path(data: Any, path: KeyPath) -> KeyPath:
         _ensure_named(data, step, followed)
         _ensure_own(data, step, followed, path)
         if isinstance(data, list | tuple):
-            step = _position(data, step, followed)
-            data = data[step]
+            if len(data) == 1 and isinstance(data[0], Mapping) and step in data[0] and "name" not in data[0]:
+                followed, data = (*followed, 0), data[0].get(step)
+            else:
+                step = _position(data, step, followed)
+                data = data[step]
         elif isinstance(step, str) and (data is None or isinstance(data, Mapping)):
             data = (data or {}).get(step)
         else:
@@ -107,11 +111,11 @@ def _position(data: list[Any] | tuple[Any, ...], step: str | int, path: KeyPath)
     if step in names:
         return names.index(step)
     known = [name for name in names if isinstance(name, str)]
-    position = step if step.isdecimal() else "0"
+    position = f"[{step}]" if step.isdecimal() else f"[0].{step}"
     message = (
         unknown_word("entry", step, known)
         if known
-        else f"a list has positions, not keys; write [{position}] instead of {step!r}"
+        else f"a list has positions, not keys; write {position} instead of {step!r}"
     )
     raise ProblemError(Issue(path=path, message=message))
 

@@ -8,7 +8,7 @@ from tool_problems import FREE, HELD, ROLLER, WEDGE, Spec, made
 
 from bemcontact.bem import rigid_motions
 from bemcontact.bem.body import Body, body_of
-from bemcontact.bem.rigid_motions import FAR, FreeMotions, RigidMotions, toward
+from bemcontact.bem.rigid_motions import FAR, FreeMotions, RigidMotions, echelon, toward
 
 WIDE = {"table": FREE["contact_zones"]["table"], "press": {
     "edges": ["head", "top"], "surface": FREE["contact_zones"]["punch"]["surface"]}}  # fmt: skip
@@ -248,3 +248,19 @@ def test_a_joint_motion_of_many_bodies_is_not_described_body_by_body():
     (text,) = many.describe()
     assert text.startswith("joint motion of the body '0', the body '1', the body '2' and the body '3' together: that")
     assert text.endswith(f"with the {TURN} (0, 1) of the body '0'")
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_slight_components_of_motions_are_no_pivots(seed):
+    """Spins about places a little beside the middles of bodies, and motions of all together: no digit is lost."""
+    rng = np.random.default_rng(seed)
+    spins = np.zeros((3, 9))
+    for body in range(3):
+        spins[body, 3 * body : 3 * body + 3] = *rng.uniform(-1, 1, 2) * 10.0 ** rng.integers(-9, -4), 1.0
+    together = np.hstack([np.eye(3)[:2]] * 3)
+    basis = np.vstack([spins, together])
+    turned = np.linalg.qr(rng.standard_normal((5, 5)))[0] @ np.linalg.qr(basis.T)[0].T
+    rows = echelon(turned)
+    np.testing.assert_allclose(np.linalg.norm(rows, axis=1), 1.0)
+    assert np.linalg.svd(rows, compute_uv=False)[-1] > 0.1
+    np.testing.assert_allclose(rows @ np.linalg.pinv(basis) @ basis, rows, rtol=0, atol=1e-13)

@@ -86,6 +86,14 @@ def test_replacing_an_entry_does_not_change_the_original():
     assert with_entry(DATA, ("loads", "gravity", "density"), 7)["loads"] == {"gravity": {"density": 7}}
 
 
+def test_a_key_of_the_only_entry_of_a_list_leads_to_it():
+    """A spec may state `force: {y: -200}` for a list of one force; with names or more entries there is a choice."""
+    assert existing_path({"force": [{"x": 0, "y": -200}]}, ("force", "y")) == ("force", 0, "y")
+    for entries in ([{"y": 1}, {"y": 2}], [{"name": "a", "y": 1}], []):
+        with pytest.raises(ProblemError):
+            existing_path({"force": entries}, ("force", "y"))
+
+
 def test_value_under_a_misspelled_key_is_read():
     problem = RawValue((), {"materiel": {"young_modulus": 1, "poisson_ratio": 0}})
     material = problem.below(Problem, "material")
