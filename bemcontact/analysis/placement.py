@@ -394,18 +394,28 @@ def _places_changed(
     gaps: SurfaceGaps, contact: CondensedContact, solution: ContactSolution, there: CondensedContact,
     again: ContactSolution,
 ) -> Iterator[str]:  # fmt: skip
-    """Note the contact of each zone whose place changes most, by a noticeable part of its length."""
+    """Note the contact whose place changes most, and that whose length does, by a noticeable part of its length."""
     was, is_now = footprint(contact, solution).intervals, footprint(there, again).intervals
-    if [item.run for item in was] != [item.run for item in is_now]:
+    if not was or [item.run for item in was] != [item.run for item in is_now]:
         return
     before, after = (np.array([item.arc for item in intervals]).reshape(-1, 2) for intervals in (was, is_now))
-    shifts, length = abs(np.mean(after - before, axis=1)), np.maximum(np.ptp(before, axis=1), np.ptp(after, axis=1))
-    shifts = np.divide(shifts, length, out=np.zeros(len(was)), where=length > 0)
-    if len(was) and shifts[number := int(np.argmax(shifts))] >= noted(gaps.problem):
+    lengths = np.ptp(before, axis=1), np.ptp(after, axis=1)
+    length = np.maximum(*lengths)
+    shifts, grown = (
+        np.divide(change, length, out=np.zeros(len(was)), where=length > 0)
+        for change in (abs(np.mean(after - before, axis=1)), lengths[1] - lengths[0])
+    )
+    if shifts[number := int(np.argmax(shifts))] >= noted(gaps.problem):
         yield (
             f"with the gaps after the motion of the body, contact of '{was[number].zone}' is elsewhere by "
             f"{100 * shifts[number]:.2g} % of its length, or more; error bars of its ends and of rotations do not "
             "include this"
+        )
+    if abs(grown[number := int(np.argmax(abs(grown)))]) >= noted(gaps.problem):
+        yield (
+            f"with the gaps after the motion of the body, contact of '{was[number].zone}' is "
+            f"{'longer' if grown[number] > 0 else 'shorter'} by {100 * abs(grown[number]):.2g} %; error bars of its "
+            "length and ends do not include this"
         )
 
 

@@ -516,6 +516,45 @@ def test_a_small_force_is_judged_by_itself_and_by_statics():
     assert float(told) / 100 == pytest.approx((20 - wall) / wall, rel=0.05)
 
 
+@pytest.mark.parametrize("density", [0.024, 0.16])
+def test_a_soft_roller_that_may_spin_has_a_note_of_its_length_on_a_stiff_body(density):
+    """It has its own normals. Half of it, which cannot spin, has those of the flat body: what the note is about."""
+
+    def on_block(angles, edges, held):
+        rim = {"name": "rim", "kind": "arc", "center": [0, 0], "radius": 8, "angles": angles}
+        corners = {"bottom": (-24, -24), "right": (24, -24), "top": (24, -8), "left": (-24, -8)}
+        return problem({
+            "name": "roller",
+            "materials": {
+                "soft": {"young_modulus": 500.0, "poisson_ratio": 0.0},
+                "stiff": {"young_modulus": 1e6, "poisson_ratio": 0.3},
+            },
+            "bodies": {
+                "roller": {
+                    "material": "soft",
+                    "boundary": {"outer": [rim, *edges]},
+                    "conditions": held,
+                    "loads": {"gravity": {"density": density, "acceleration": [0, -1]}},
+                },
+                "block": {
+                    "material": "stiff",
+                    "boundary": {"outer": [{"name": name, "start": at} for name, at in corners.items()]},
+                    "conditions": {"bottom": {"fixed": True}},
+                },
+            },
+            "contacts": {"foot": {"between": ["roller", "block"]}},
+            "accuracy": 0.003,
+        })  # fmt: skip
+
+    whole = solve(on_block([-90, 270], [], {}))
+    half = solve(on_block([-90, 90], [{"name": "axis"}], {"axis": {"symmetry": "x"}}))
+    (note,) = [note for note in whole.notes if "longer by" in note]
+    said = float(re.findall(r"longer by ([\d.]+) %", note)[0]) / 100
+    change = 2 * half.intervals[0].length / whole.intervals[0].length - 1
+    assert 0.5 * said < change < said
+    assert not any("longer by" in note for note in half.notes)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("squeeze", [0.05, 0.5])
 def test_what_both_walls_of_a_groove_gain_and_lose_does_not_cancel(squeeze):
