@@ -17,6 +17,7 @@ class Material(SpecModel):
         **dict.fromkeys(("E", "elastic_modulus"), "Young's modulus is young_modulus"),
         **dict.fromkeys(("nu", "ν"), "Poisson's ratio is poisson_ratio"),
         **dict.fromkeys(("density", "rho"), "the density belongs to the load that needs it: loads.gravity.density"),
+        **dict.fromkeys(("plane", "plane_stress", "plane_strain"), "write state: plane_stress, or state: plane_strain"),
         **dict.fromkeys(("alpha", "expansion"), "thermal expansion belongs to the load: loads.temperature.expansion"),
     }
 

@@ -41,7 +41,8 @@ def plot(shown_object: Any, axes: Axes | None, options: Mapping[str, Any]) -> Ax
     if axes is None:
         axes = pyplot.figure(layout="constrained").add_subplot()
     elif not isinstance(axes, Axes):
-        raise OptionError(f"axes must be axes of matplotlib, or None; found {shown(axes)}")
+        save = "; .plot().figure.savefig(…) writes a file" if isinstance(axes, str) else ""
+        raise OptionError(f"axes must be axes of matplotlib, or None; found {shown(axes)}{save}")
     draw(axes)
     return axes
 

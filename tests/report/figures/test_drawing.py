@@ -77,7 +77,11 @@ def test_axes_are_made_where_none_are_given():
         ("result", {"colour": 1}, "'contact' has no option 'colour'; it takes zone, stress"),
         ("result", {"what": "deformed", "zone": "foot"}, "it takes no option"),
         ("result", {"stress": "shear"}, "no stress 'shear'; take one of"),
-        ("result", {"axes": "here"}, "axes must be axes of matplotlib"),
+        (
+            "result",
+            {"axes": "here"},
+            r"axes must be axes of matplotlib, or None; found 'here'; \.plot\(\)\.figure\.savefig",
+        ),
         ("condensed", {"what": "contact"}, "has no boundary to draw"),
         ("study", {"output": "price"}, "no output 'price'; take one of peak"),
         ("study", {"over": "price"}, "no parameter 'price'; take one of"),
