@@ -69,7 +69,10 @@ def crowd(box: Box, taken: Sequence[Box], ink: Array) -> float:
 
 def least_crowded(centers: Array, size: tuple[float, float], taken: Sequence[Box], ink: Array) -> int:
     """Index of the first of the centers (c, 2) at which a label covers least of other labels and of ink (k, 2)."""
-    return int(np.argmin([crowd(centered(center, size), taken, ink) for center in centers]))
+    ink = ink[np.argsort(ink[:, 0])]
+    low, high = (np.searchsorted(ink[:, 0], centers[:, 0] + side * size[0] / 2) for side in (-1, 1))
+    columns = zip(centers, low.tolist(), high.tolist(), strict=True)
+    return int(np.argmin([crowd(centered(at, size), taken, ink[first:last]) for at, first, last in columns]))
 
 
 @dataclass(frozen=True, kw_only=True)

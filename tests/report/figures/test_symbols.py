@@ -42,3 +42,13 @@ def test_ground_is_hatched_on_the_side_away_from_the_normals():
     assert np.ptp(hatches[:, 0, 0]) > 9
     assert (hatches[:, 1, 1] < 0).all()
     assert (hatches[:, 0, 1] == 0).all()
+
+
+def test_the_least_crowded_place_is_that_of_all_points():
+    """Only points between the sides of a label are looked at; those on its border do not count."""
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        ink, centers = rng.integers(0, 60, (300, 2)).astype(float), rng.integers(0, 60, (40, 2)).astype(float)
+        taken = [centered(at, (12.0, 6.0)) for at in rng.uniform(0, 60, (3, 2))]
+        all_points = [crowd(centered(at, (10.0, 6.0)), taken, ink) for at in centers]
+        assert least_crowded(centers, (10.0, 6.0), taken, ink) == int(np.argmin(all_points))
