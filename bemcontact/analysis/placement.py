@@ -39,7 +39,7 @@ SMALL_COMPONENT = 0.15
 """Component of a force over the force from which its change is judged by itself, and not by the force.
 
 What the force of a tool prescribes does not change; the other component may, by far more than the force as a whole."""
-SMALL_CONTACT = 0.01
+SMALL_CONTACT = 0.08
 """Force of a contact over that of its zone from which it is judged by itself, and not by this part."""
 MOVES_ON = 0.8
 """Part of a motion by which a body moves on in the second solution, from which it is not held: the steps do not end.
@@ -351,11 +351,16 @@ def _forces_changed(
     zone, units = contact.zone_names[zones[number]], gaps.problem.units
     motion = _motion_in(moved, within[number], both)
     gained = _vector(is_now[number] - was[number], units.line_force)
+    whole = float(of_zone[zones[number]])
+    of = (
+        _of_component(part, float(was[number, axis]), float(size[number, axis]))
+        if abs(own[number]) @ solution.pressure >= SMALL_CONTACT * whole
+        else f"{100 * part * size[number, axis] / whole:.2g} % of all force there"
+    )
     words = (
         f"both sides of '{zone}' move by {_vector(motion, units.length)} against each other, which is "
         "not small beside their shapes: with the gaps and the directions of the surfaces where the body then is, the "
-        f"force between them changes by {gained}, along {'xy'[axis]} by "
-        f"{_of_component(part, float(was[number, axis]), float(size[number, axis]))}; "
+        f"force between them changes by {gained}, along {'xy'[axis]} by {of}; "
         f"{_remedy(gaps, motion)}"
     )
     if part < WITHHELD:
