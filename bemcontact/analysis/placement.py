@@ -210,12 +210,9 @@ def _pressed_length(contact: CondensedContact, pressed: BoolArray, i: int) -> fl
 
 def _stretches(contact: CondensedContact, pressed: BoolArray, own: IntArray) -> IntArray:
     """Number of the unbroken stretch, pressed or open, of each of the points (k,) of a run."""
-    order = np.argsort(contact.arc_position[own])
-    along = np.cumsum(np.append(0, np.diff(pressed[own[order]].astype(int)) != 0))
-    if np.isfinite(contact.run_length[contact.run[own[0]]]) and pressed[own[order[[0, -1]]]].all():
-        along[along == along[-1]] = 0  # across the seam of a closed run
-    stretch = np.empty(len(own), int)
-    stretch[order] = along
+    stretch = np.cumsum(np.append(0, np.diff(pressed[own].astype(int)) != 0))
+    if np.isfinite(contact.run_length[contact.run[own[0]]]) and pressed[own[[0, -1]]].all():
+        stretch[stretch == stretch[-1]] = 0  # across the seam of a closed run
     return stretch
 
 

@@ -372,11 +372,19 @@ def _check_support(body: Body) -> None:
     pull = nonnegative_residual(R.T, -load)
     if np.linalg.norm(pull) > BALANCED:
         raise ProblemError(_pull(body, body.seen.combined(pull[:, None])))
-    if load.size and not load.any() and _may_leave(R):
+    unloaded = load.size and not load.any()
+    if unloaded and (_may_leave(R) or (body.idle_motion is not None and not _may_be_squeezed(body))):
         raise ProblemError(
             f"contact holds {_against(body.seen)}, but no load presses it onto its support, so that its position "
             "is not determined; apply a load, or prescribe a displacement"
         )
+
+
+def _may_be_squeezed(body: Body) -> bool:
+    """Whether a load, a displacement, a tool or a surface inside the body is stated: what may press without a load."""
+    values, particular = body.acting.values, body.acting.particular
+    stated = any(part.any() for part in (values.displacement, values.traction, particular.displacement))
+    return stated or bool(body.problem.tools) or bool(body.points.gap.min() < -UNSEEN * body.mesh.size)
 
 
 def _may_leave(rates: Array) -> bool:

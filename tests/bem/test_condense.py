@@ -101,10 +101,14 @@ def test_a_block_is_squeezed_beside_a_wall(gap, turn, formulation):
 
 
 def test_a_block_that_nothing_squeezes_or_loads_has_no_position():
-    """All contact ends when it is moved off, even where a surface is drawn inside it."""
-    for zones in (None, {"base": (["bottom"], PLANE), "wall": (["left"], {**WALL, "point": (0.1, 0)})}):
+    """All contact ends when it is moved off, also where a surface is drawn inside it; or nothing squeezes it."""
+    corner = {"base": (["bottom"], PLANE), "wall": (["left"], {**WALL, "point": (0.1, 0)})}
+    lid = {"kind": "plane", "point": (0, 1), "normal": (0, -1)}
+    for zones in (None, corner, {"base": (["bottom"], PLANE), "wall": (["left"], WALL), "lid": (["top"], lid)}):
         with pytest.raises(ProblemError, match="no load presses it"):
             body_of(block({}, zones))
+    hot = {"temperature": {"expansion": 1e-5, "change": 100}}
+    body_of(block({}, {"base": (["bottom"], PLANE), "wall": (["left"], WALL), "lid": (["top"], lid)}, loads=hot))
 
 
 def test_uniform_pressure_on_a_block_is_exact():

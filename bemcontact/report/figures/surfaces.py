@@ -79,7 +79,7 @@ def bent(result: Result, body: str, points: Array, factor: float) -> Array:
         surface = problem.zones[name].surface
         if isinstance(surface, BodySurface) and surface.body == body and _bends(result, number, factor):
             own = np.flatnonzero(contact.zone == number)
-            gap, normals = contact.initial_gap[own, None], contact.normals[own]
+            gap, normals = _gap_as_drawn(contact)[own, None], contact.normals[own]
             away, nearest = KDTree(contact.points[own] - (gap - surface.offset) * normals).query(points)
             moves = -((factor - 1) * gap + surface.offset) * normals
             total += np.maximum(1 - away / (DEPTH * problem.size), 0.0)[:, None] * moves[nearest]
@@ -106,7 +106,7 @@ def _bends(result: Result, number: int, factor: float) -> bool:
     if factor == 1 or problem is None or not isinstance(problem.zones[contact.zone_names[number]].surface, BodySurface):
         return False
     own = contact.zone == number
-    largest = (factor - 1) * float(np.abs(contact.initial_gap[own]).max())
+    largest = (factor - 1) * float(np.abs(_gap_as_drawn(contact)[own]).max())
     small = largest <= min(BENT * problem.size, STEEP * float(contact.weights[own].sum()))
     return small and _reach(result, number, factor) > THROUGH * problem.size
 
@@ -118,17 +118,22 @@ def _reach(result: Result, number: int, factor: float) -> float:
     own, nearest = np.flatnonzero(contact.zone == number), _nearest_points(result, number)
     gap = factor * contact.gap(result.solution.pressure, result.solution.rigid_amplitudes)
     if isinstance(surface, BodySurface) and surface.elastic:  # neither body is moved as a whole
-        apart = gap - (factor - 1) * contact.initial_gap - surface.offset
+        apart = gap - (factor - 1) * _gap_as_drawn(contact) - surface.offset
         return float(max(-apart[own].min(), apart[own[result.touching[own]]].max(initial=0.0)))
     if isinstance(surface, BodySurface) or _turn(contact.normals[nearest]) <= TURN:
-        moved = contact.initial_gap[own] - contact.normals[own] @ _shift(contact, nearest, 1.0)
+        moved = _gap_as_drawn(contact)[own] - contact.normals[own] @ _shift(contact, nearest, 1.0)
         return float((-gap[own] + (factor - 1) * moved).max())
     return 0.0
 
 
 def _shift(contact: CondensedContact, nearest: IntArray, factor: float) -> Array:
     """Mean gap (2,) [L] along the normals of contact points, times a factor."""
-    return factor * (contact.initial_gap[nearest, None] * contact.normals[nearest]).mean(axis=0)
+    return factor * (_gap_as_drawn(contact)[nearest, None] * contact.normals[nearest]).mean(axis=0)
+
+
+def _gap_as_drawn(contact: CondensedContact) -> Array:
+    """Gap (n,) [L] before anything moves, also the tools whose displacement is prescribed."""
+    return contact.initial_gap - contact.tools.motions @ contact.tools.position
 
 
 def _nearest_points(result: Result, zone: int) -> IntArray:
