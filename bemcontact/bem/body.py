@@ -9,20 +9,11 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, nonnegative_residual
 from bemcontact.bem.bonds import BondedPoints
 from bemcontact.bem.contact_points import ContactPoints, contact_points
+from bemcontact.bem.free_motions import BODY, UNSEEN, FreeMotions, PlacedTools, free_motions, placed_tools
 from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
 from bemcontact.bem.mesh import Mesh, MeshPart, build
 from bemcontact.bem.outline import Outline
-from bemcontact.bem.rigid_motions import (
-    BODY,
-    UNSEEN,
-    FreeMotions,
-    PlacedTools,
-    RigidMotions,
-    free_motions,
-    free_rigid_motions,
-    placed_tools,
-    toward,
-)
+from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions, toward
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.checks.memory import ensure_memory
 from bemcontact.contact.free_motions import MotionAlgebra
