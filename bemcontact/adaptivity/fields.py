@@ -81,7 +81,7 @@ class CaseAnswer:
         Nothing determines motions that no contact point sees, and none at all where nothing touches.
         """
         body, whole = self.condensation.body, self.state.displacement
-        free = (body.unseen,) if self.pressure.any() else (body.unseen, body.seen)
+        free = (body.pinned_motions,) if self.pressure.any() else (body.pinned_motions, body.seen)
         motions = np.concatenate([each.displacement(body.mesh)[body.mesh.elements] for each in free], axis=-1)
         if not motions.shape[-1]:
             return whole

@@ -66,7 +66,8 @@ class Body:
     motions : of each elastic body, all rigid motions that the conditions leave free
     seen : motions of bodies and tools, and combinations, that move contact points along the rigid normals
     unseen : the other free motions, which change no gap
-    bonds : pairs of nodes of bonded bodies, which all of these motions leave together
+    spins : rotations of bodies around their centers that no pressure drives
+    bonds : nodes of bonded bodies, which seen and unseen motions leave together, and bodies that these do not spin
     apart : motions of elastic bodies that would not
     """
 
@@ -79,6 +80,7 @@ class Body:
     motions: tuple[RigidMotions, ...]
     seen: FreeMotions
     unseen: FreeMotions
+    spins: FreeMotions
     bonds: BondedPoints
     apart: FreeMotions
 
@@ -137,10 +139,15 @@ class Body:
         total = [self.pinned.total(alone, self.tools.force * alone) for alone in unit]
         return np.where(abs(work) > BALANCED * np.array(total), work, 0.0)
 
+    @property
+    def pinned_motions(self) -> FreeMotions:
+        """The motions that nothing determines: those that change no gap, and spins."""
+        return replace(self.unseen, coefficients=np.vstack([self.unseen.coefficients, self.spins.coefficients]))
+
     @cached_property
     def pinned(self) -> Pinned:
-        """The motions that change no gap, with loads on the exact curves: the mesh does not affect their balance."""
-        motions = self.unseen.in_user_units()
+        """These motions, with loads on the exact curves: the mesh does not affect their balance."""
+        motions = self.pinned_motions.in_user_units()
         return Pinned(
             motions=tuple(f"{motions.who(j)} against the {motions.way(j)}" for j in range(len(motions))),
             turns=np.array([motions.turns(j) for j in range(len(motions))], bool),
@@ -209,7 +216,7 @@ class Body:
     @property
     def notes(self) -> tuple[str, ...]:
         """Decisions that a user should know."""
-        ways = self.unseen.describe()
+        ways = self.pinned_motions.describe()
         at_zero = [f"the {way} moves no contact point and has no load: it is held at zero" for way in ways]
         if len(ways) > MANY:
             at_zero = [f"these move no contact point and have no load, and are held at zero: the {', the '.join(ways)}"]
@@ -301,9 +308,11 @@ def body_of(problem: Problem) -> Body:
     names = tuple(f"the body '{part.name}'" for part in problem.parts) if problem.several else (BODY,)
     bonds = BondedPoints.of(problem, mesh, permanent.values)
     seen, unseen, apart = free_motions(points, motions, tools, names, bonds)
+    centers = [problem.spin_centers.get(part.name) for part in problem.parts]
+    spins = replace(seen, coefficients=seen.spins(centers))
     body = Body(
         problem=problem, mesh=mesh, outline=outline, points=points, loadings=(permanent, *cases), tools=tools,
-        motions=motions, seen=seen, unseen=unseen, bonds=bonds, apart=apart,
+        motions=motions, seen=seen, unseen=unseen, spins=spins, bonds=bonds, apart=apart,
     )  # fmt: skip
     if problem.case is not None or not problem.load_cases:
         ensure_held(body)

@@ -2,6 +2,9 @@
 
 Tractions act in both directions. They follow from loads, contact pressures and rigid motions by the condition that the
 displacements of both nodes are equal, before anything else is known of contact: bodies that are bonded are one body.
+
+The spin of a body without friction is held in the same way. No pressure spins a disk. But common normals, which are
+those of the stiffer side more than its own, miss its center by a little, and contact would have to hold this spin.
 """
 
 from dataclasses import dataclass
@@ -17,31 +20,37 @@ from bemcontact.problems.problem import Problem
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BondedPoints:
-    """Directions of pairs of nodes, b in all, along which they move together.
+    """What does not move, b components in all: one node beside another along an axis, or a body that might spin.
+
+    The spin of a body is its mean displacement around its center. What holds it is traction around this center,
+    in proportion to the distance from it.
 
     Parameters
     ----------
     mesh : Mesh
-    node, other : (b,) nodes of the first and the second body
-    axis : (b,) 0 for x, 1 for y
-    weights : (b,) tributary length of the first node [L]
-    element, local, direction : (q,) the (element, local node) pairs of both bodies on which a unit traction acts
-    factor : (q,) of it there: nodal forces of both bodies are equal and opposite
+    weights : (b,) tributary length of the first node, or perimeter of the body [L]
+    element, local, component : (q,) the (element, local node) pairs on which a unit traction of each component acts
+    tractions : (q, 2) by it there: nodal forces of two bodies are equal and opposite
+    node, changed : (r,) nodes that move along with each component
+    change : (r, 2) of it by their unit displacements along x and y; the nodal forces over the weight
     """
 
     mesh: Mesh
-    node: IntArray
-    other: IntArray
-    axis: IntArray
     weights: Array
     element: IntArray
     local: IntArray
-    direction: IntArray
-    factor: Array
+    component: IntArray
+    tractions: Array
+    node: IntArray
+    changed: IntArray
+    change: Array
 
     @classmethod
     def of(cls, problem: Problem, mesh: Mesh, values: BoundaryValues) -> Self:
-        """List the pairs of all bonded interfaces; none along an axis along which conditions hold both nodes."""
+        """List the components of all bonded interfaces, then those of all bodies that might spin.
+
+        There is none along an axis along which conditions hold both nodes.
+        """
         facing = [mesh.facing[name] for name in problem.bonded]
         elements = np.concatenate([np.flatnonzero(own >= 0) for own in facing] or [np.zeros(0, int)])
         across = np.concatenate([own[own >= 0] for own in facing] or [np.zeros(0, int)])
@@ -54,29 +63,35 @@ class BondedPoints:
         other[pair] = mesh.elements[opposite]
         held = values.displacement_given[node] & values.displacement_given[other]
         point, axis = np.nonzero(~held)
-        number = np.full((len(node), 2), -1)
-        number[point, axis] = np.arange(len(point))
+        number, count = np.full((len(node), 2), -1), len(point)
+        number[point, axis] = np.arange(count)
         ratio = lengths[0] / lengths[1]
         shares = [
-            (at[0][free], at[1][free], number[pair[free], side], factor[free])
+            (*at, number[pair, side], factor[:, None] * np.eye(2)[side])
             for side in (0, 1)
-            for free in (number[pair, side] >= 0,)
             for at, factor in ((own, np.ones(len(pair))), (opposite, -ratio[pair]))
         ]
-        element, at, direction, factor = (np.concatenate(part) for part in zip(*shares, strict=True))
+        each, sign = np.arange(count), np.eye(2)[axis]
+        moves, weights = [(node[point], each, sign), (other[point], each, -sign)], [lengths[0][point]]
+        for part, on_mesh in zip(problem.parts, mesh.parts, strict=True):
+            if (center := problem.spin_centers.get(part.name)) is not None:
+                around, of_node = _around(on_mesh.mesh, np.array(center))
+                own, nodes = np.arange(len(mesh.elements))[on_mesh.elements], np.arange(len(mesh.nodes))[on_mesh.nodes]
+                at = np.repeat(own, 3), np.tile(np.arange(3), len(own))
+                shares.append((*at, np.full(3 * len(own), count), around[on_mesh.mesh.elements].reshape(-1, 2)))
+                moves.append((nodes, np.full(len(nodes), count), around * (of_node / of_node.sum())[:, None]))
+                weights, count = [*weights, of_node.sum(keepdims=True)], count + 1
+        element, at, component, tractions = (np.concatenate(part) for part in zip(*shares, strict=True))
+        free = component >= 0
+        nodes, changed, change = (np.concatenate(part) for part in zip(*moves, strict=True))
         return cls(
-            mesh=mesh, node=node[point], other=other[point], axis=axis, weights=lengths[0][point], element=element,
-            local=at, direction=direction, factor=factor,
+            mesh=mesh, weights=np.concatenate(weights), element=element[free], local=at[free],
+            component=component[free], tractions=tractions[free], node=nodes, changed=changed, change=change,
         )  # fmt: skip
 
     def __len__(self) -> int:
-        """Return the number of directions."""
-        return len(self.node)
-
-    @property
-    def tractions(self) -> Array:
-        """Traction (q, 2) by a unit of it."""
-        return self.factor[:, None] * np.eye(2)[self.axis[self.direction]]
+        """Return the number of components."""
+        return len(self.weights)
 
     def added_to(self, pressures: UnitPressures, part: MeshPart, points: int) -> UnitPressures:
         """The unit pressures on the mesh of one body, then its unit tractions, with numbers behind those of points."""
@@ -84,20 +99,26 @@ class BondedPoints:
         new[part.nodes] = np.arange(len(part.mesh.nodes))
         inside = np.arange(len(self.mesh.elements))[part.elements]
         own = (self.element >= inside[0]) & (self.element <= inside[-1])
-        number, column = np.unique(self.direction[own], return_inverse=True)
-        each, sign = np.arange(len(self)), np.eye(2)[self.axis]
-        node, gap = np.concatenate([self.node, self.other]), np.concatenate([each, each])
-        change, seen = np.concatenate([sign, -sign]), new[node] >= 0
+        number, column = np.unique(self.component[own], return_inverse=True)
+        seen = new[self.node] >= 0
         return UnitPressures(
             number=np.append(pressures.number, points + number),
             element=np.append(pressures.element, self.element[own] - inside[0]),
             local=np.append(pressures.local, self.local[own]),
             pressure=np.append(pressures.pressure, len(pressures) + column),
             traction=np.concatenate([pressures.traction, self.tractions[own]]),
-            node=np.append(pressures.node, new[node[seen]]),
-            gap=np.append(pressures.gap, points + gap[seen]),
-            change=np.concatenate([pressures.change, change[seen]]),
+            node=np.append(pressures.node, new[self.node[seen]]),
+            gap=np.append(pressures.gap, points + self.changed[seen]),
+            change=np.concatenate([pressures.change, self.change[seen]]),
         )
+
+
+def _around(mesh: Mesh, center: Array) -> tuple[Array, Array]:
+    """Traction (N, 2) around a center at the nodes of a body, of which no force is left, and their lengths (N,) [L]."""
+    x, y = (mesh.nodes - center).T
+    around = np.column_stack([-y, x]) / np.hypot(x, y).max()
+    lengths = np.bincount(mesh.elements.ravel(), mesh.tributary.ravel())
+    return around - np.average(around, axis=0, weights=lengths), lengths
 
 
 class Bond(NamedTuple):
@@ -120,7 +141,7 @@ def eliminate(
 
     Parameters
     ----------
-    compliance, displacement : (n + b, n + b), (n + b, s) with the bonded directions last
+    compliance, displacement : (n + b, n + b), (n + b, s) with the components of bonds last
     changes : (n + b, k) by motions that would move bonded bodies apart
     weights : (n + b,) tributary lengths [L]
     load : (k, s) work of the loadings in these motions [p L]
@@ -131,7 +152,7 @@ def eliminate(
     forces = weights[:, None] * changes
     matrix = np.block([[compliance[n:, n:], changes[n:]], [forces[n:].T, np.zeros((k, k))]])
     right = np.block([[-compliance[n:, :n], -displacement[n:]], [-forces[:n].T, -load]])
-    scale = np.abs(compliance[n:, n:]).max(initial=0.0) or 1.0
+    scale = np.abs(compliance[n:]).max(initial=0.0) or 1.0
     rows = np.append(
         np.full(len(compliance) - n, 1 / scale), 1 / (np.abs(forces[n:]).max(axis=0, initial=0.0) + 1e-300)
     )

@@ -326,7 +326,7 @@ def _pressed(body: Body) -> Iterator[tuple[IntArray, IntArray, IntArray, Array]]
     other = points.opposite
     yield points.element, points.local, points.point, points.tractions
     yield other.element, other.local, points.point[other.share], other.traction
-    yield bonds.element, bonds.local, len(points) + bonds.direction, bonds.tractions
+    yield bonds.element, bonds.local, len(points) + bonds.component, bonds.tractions
 
 
 def _boundary(

@@ -10,8 +10,10 @@ from bemcontact.bem.bonds import BondedPoints, split_motions
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions, echelon, short_svd
+from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.problems.contact_zone import RigidTool, ToolAction
 from bemcontact.problems.problem import Problem
+from bemcontact.problems.validation import Point
 
 MOST_WAYS = 3
 """Largest number of different ways in which parts move together that are named."""
@@ -205,6 +207,15 @@ class FreeMotions:
         part = self._moving(motion)[0]
         return replace(self, coefficients=np.eye(self.coefficients.shape[1])[3 * part : 3 * part + 2])
 
+    def spins(self, centers: Sequence[Point | None]) -> Array:
+        """Coefficients (k, 3 b + 3 t) of rotations of each body about a center [L], if it is given one."""
+        rows = np.zeros((len(centers), self.coefficients.shape[1]))
+        for number, center in enumerate(centers):
+            if center is not None:
+                x, y = (np.array(center) - self.centers[number]) / self.radius
+                rows[number, 3 * number : 3 * number + 3] = y, -x, 1.0
+        return rows[rows.any(axis=1)]
+
     def turns(self, motion: int) -> bool:
         """Whether something turns in a motion."""
         size = abs(self.coefficients[motion]).max()
@@ -235,8 +246,8 @@ def free_motions(
     """Separate the free motions of bodies and of tools into those that contact sees and those that it does not see.
 
     The seen motions have independent columns of R; those of bodies come first, then those of tools. In the unseen
-    motions no gap changes, or bodies and tools move together. The last ones would move bonded bodies apart, as the
-    others do not.
+    motions no gap changes, or bodies and tools move together. The last ones would move bonded bodies apart, or spin
+    bodies that might, as the others do not.
     """
     t, first = len(tools.names), 3 * len(of_bodies)
     poles, radius = tools.poles(points), of_bodies[0].radius
@@ -304,17 +315,13 @@ def _axis_of_walls(normals: Array) -> Array | None:
 
 
 def _at_bonds(bonds: BondedPoints, of_bodies: Sequence[RigidMotions]) -> Array:
-    """Changes (b, 3 b') of the distances of bonded nodes by unit motions of each body."""
-    rows, changes = np.arange(len(bonds)), np.zeros((len(bonds), 3 * len(of_bodies)))
-    if not len(bonds):
-        return changes
+    """Changes (b, 3 b') of the components of bonds by unit motions of each body."""
+    changes = np.zeros((len(bonds), 3 * len(of_bodies)))
     for number, (own, part) in enumerate(zip(of_bodies, bonds.mesh.parts, strict=True)):
-        every = replace(own, coefficients=np.eye(3))
-        has = np.zeros(len(bonds.mesh.nodes), bool)
-        has[part.nodes] = True
-        for nodes, sign in ((bonds.node, 1.0), (bonds.other, -1.0)):
-            moved = every.displacement(bonds.mesh.nodes[nodes])[rows, bonds.axis]
-            changes[:, 3 * number : 3 * number + 3] += np.where(has[nodes][:, None], sign * moved, 0.0)
+        pressures = bonds.added_to(UnitPressures.none(), part, 0)
+        changes[:, 3 * number : 3 * number + 3] = replace(own, coefficients=np.eye(3)).gap_changes(
+            pressures, part.mesh, len(bonds)
+        )
     return changes
 
 

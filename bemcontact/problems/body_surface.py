@@ -89,8 +89,7 @@ class BodySurface:
 
     Between two elastic bodies, gap and pressure count along a common normal. Where the bodies meet, both are deformed:
     each turns its boundary in proportion to its compliance. So the normal that they come to have is between those of
-    both, nearer to that of the stiffer one. It stays the same if the sides are exchanged. A body that may spin, such as
-    a roller, has its own normals, so that no pressure spins it.
+    both, nearer to that of the stiffer one. It stays the same if the sides are exchanged.
 
     Parameters
     ----------
@@ -99,8 +98,7 @@ class BodySurface:
     edges : that may be touched, with their names in the problem
     loops : all loops of the body
     offset : what is added to the gap as drawn [L]
-    share : part that the first side has in common normals: its modulus E / (1 - ν²) over the sum of both, 1 if it may
-        spin, and 0 if this body may
+    share : part that the first side has in common normals: its modulus E / (1 - ν²) over the sum of both
     first : edges of the first side where it has such a part
     first_loops : all loops of that body
     approach : displacement [L] of this body that makes it touch them as drawn; pairs are those after it

@@ -8,6 +8,7 @@ from math import dist
 from typing import ClassVar, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import model_validator
 
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
@@ -187,6 +188,12 @@ class Boundary(SpecModel):
 def size_of_edges(edges: Iterable[Edge]) -> float:
     """Diameter of the bounding box of edges [L]."""
     return float(np.hypot(*np.ptp(_box(edges), axis=0)))
+
+
+def in_box(edges: Iterable[Edge], point: ArrayLike) -> bool:
+    """Whether a point (2,) [L] is in the bounding box of edges."""
+    least, largest = np.array(_box(edges))
+    return bool(((least < point) & (point < largest)).all())
 
 
 def _box(edges: Iterable[Edge]) -> tuple[Pair, Pair]:

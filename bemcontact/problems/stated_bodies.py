@@ -24,7 +24,7 @@ from bemcontact.problems.bodies import (
     with_boundary,
 )
 from bemcontact.problems.body_surface import BodySurface, BodyZone
-from bemcontact.problems.boundary import Boundary
+from bemcontact.problems.boundary import Boundary, in_box
 from bemcontact.problems.conditions import Condition, Loads
 from bemcontact.problems.contact_zone import ContactZone
 from bemcontact.problems.curves import CircularArc, Edge
@@ -40,7 +40,9 @@ REACH = 0.03
 """Part of the size of the smaller of two whole bodies up to which gaps may close: a larger strain is not small."""
 
 SAME_CIRCLE = 1e-9
-"""Distance of two centers, and difference of two radii, over the radius up to which they are equal."""
+"""Distance of two centers over the radius up to which they are equal."""
+LEAST_SHARE = 0.05
+"""Least part that a body that may spin has in common normals."""
 
 
 class StatedBodies(SpecModel, Drawn):
@@ -238,22 +240,29 @@ class StatedBodies(SpecModel, Drawn):
     def _share_of_first(self, first: str, second: str) -> float:
         """Part that the first of two elastic bodies has in common normals.
 
-        Where a body may spin, all normals are its own: pressure on it passes through its center, and holds no spin. Of
-        two such bodies the smaller one has them.
+        A body that may spin has some part of them: else no slope would hold it along a plane that is much stiffer.
         """
-        radii = self._spinning_radius(first), self._spinning_radius(second)
-        if abs(radii[0] - radii[1]) > SAME_CIRCLE * min(radii):
-            return float(radii[0] < radii[1])
         moduli = [self._material(name).contact_modulus for name in (first, second)]
-        return moduli[0] / sum(moduli)
+        least, most = (LEAST_SHARE * (self._spin_center(name) is not None) for name in (first, second))
+        return min(max(moduli[0] / sum(moduli), least), 1 - most)
 
-    def _spinning_radius(self, body: str) -> float:
-        """Radius [L] of a body that is not held and may touch with circles about one point only; else infinite.
+    @property
+    def spin_centers(self) -> Mapping[str, Point]:
+        """Centers [L] of the elastic bodies that may spin and touch others: no pressure without friction spins them."""
+        both = [[_body_in(side) for side in contact.between] for contact in self.contacts.values()]
+        touching = dict.fromkeys(name for pair in both if all(map(self.is_elastic, pair)) for name in pair)
+        centers = {name: self._spin_center(name) for name in touching}
+        return {name: center for name, center in centers.items() if center is not None}
+
+    def _spin_center(self, body: str) -> Point | None:
+        """Center [L] of a body that is not held and may touch with circles about one point only; else None.
 
         Springs across a circle about this point hold no spin.
         """
         contacts, bonds = ([*pairs] for pairs in ((c.between for c in self.contacts.values()), self.bonded.values()))
         sides = [side for pair in contacts for side in pair if _body_in(side) == body]
+        pairs = [{*map(_body_in, pair)} for pair in contacts]
+        others = [self.boundary_of(other) for pair in pairs if body in pair for other in pair - {body}]
         bonded = any(_body_in(side) == body for pair in bonds for side in pair)
         conditions = {qualified(body, name): condition for name, condition in self.bodies[body].conditions.items()}
         held = any(condition.displacement.given for condition in conditions.values())
@@ -266,17 +275,23 @@ class StatedBodies(SpecModel, Drawn):
         touching = {name for side in sides for name in side} | zones
         springs = {name: condition.spring for name, condition in conditions.items() if condition.spring is not None}
         held |= any(spring.given != ("normal",) for spring in springs.values())
+        outer, *holes = named_loops(self.boundary_of(body), body)
+        smaller = [np.mean(other.box, axis=0) for other in others if other.size < self.boundary_of(body).size]
+        around = [hole for hole in holes if any(in_box(hole, middle) for middle in smaller)]
         curves = [
             edge.curve
-            for loop in named_loops(self.boundary_of(body), body)
+            for loop in (outer, *holes)
             for edge in loop
-            if edge.name in springs or body in touching or any(other.name in touching for other in loop)
+            if edge.name in springs
+            or (body in touching and loop in (outer, *around))
+            or any(other.name in touching for other in loop)
         ]
         arcs = [curve for curve in curves if isinstance(curve, CircularArc)]
         if held or bonded or not arcs or len(arcs) < len(curves):
-            return np.inf
+            return None
         radius = max(max(arc.radii) for arc in arcs)
-        return radius if np.ptp([arc.center for arc in arcs], axis=0).max() <= SAME_CIRCLE * radius else np.inf
+        x, y = np.mean([arc.center for arc in arcs], axis=0).tolist()
+        return (x, y) if np.ptp([arc.center for arc in arcs], axis=0).max() <= SAME_CIRCLE * radius else None
 
     def on_pairs_of(self, other: Self) -> Self:
         """Copy whose bodies form the pairs that they form in another problem with the same boundaries and contacts.

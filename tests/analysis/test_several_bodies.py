@@ -342,9 +342,9 @@ def test_a_path_of_the_gap_between_two_bodies_ends_as_a_solve_does():
 @pytest.mark.parametrize("exchanged", [False, True])
 @pytest.mark.parametrize(("modulus", "springs"), [(1e3, False), (1e7, False), (1e3, True)])
 def test_nothing_spins_a_disk_without_friction(modulus, springs, exchanged):
-    """Between blocks that do not have their middles at its center; their pressures all pass through the center.
+    """Between blocks that do not have their middles at its center, and with springs across its bore.
 
-    Springs across its bore pass through the center too.
+    Common normals miss the center by the share of the other body in the part of the radius that a place is aside.
     """
     disk = {"name": "rim", "kind": "arc", "center": [0, 2], "radius": 2, "angles": [90, 450]}
     bore = {"name": "bore", "kind": "arc", "center": [0, 2], "radius": 0.6, "angles": [360, 0]}
@@ -358,8 +358,63 @@ def test_nothing_spins_a_disk_without_friction(modulus, springs, exchanged):
     result = solved(bodies, 0.02, **{name: pair[::-1] if exchanged else pair for name, pair in sides.items()})
     assert result.certified
     assert any("rotation counterclockwise about (0, 2)" in note and "held at zero" in note for note in result.notes)
-    for name, (x, y) in result.footprint.forces.items():
-        assert result.footprint.moments[name] == pytest.approx(-2 * x, abs=1e-9 * abs(y))
+    share = 1500.0 / (1500.0 + modulus)
+    for contact in result.footprint.intervals:
+        x, y = result.footprint.forces[contact.zone]
+        farthest = share * contact.length / 2 * np.hypot(x, y)
+        assert abs(result.footprint.moments[contact.zone] + 2 * x) < 0.01 * farthest
+
+
+@pytest.mark.slow
+def test_a_roller_on_a_block_that_hardly_deforms_is_that_on_a_plane():
+    """It may spin on both. Normals are those of the block but for the twentieth that holds the roller on it."""
+    rim = {"name": "rim", "kind": "arc", "center": [0, 2], "radius": 2, "angles": [90, 450]}
+    roller, hard = elastic({"outer": [rim]}, modulus=100.0), elastic(block((-6, 6), (-6, 0)), HELD, 1e8)
+    lid = {"lid": {"edges": "roller/rim", "surface": {"kind": "plane", "point": [0, 4], "normal": [0, -1]}}}
+    foot = {"foot": {"edges": "roller/rim", "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}}
+    common = {"name": "roller", "accuracy": 0.003, "tools": {"lid": {"zones": "lid", "force": {"y": -1.0}}}}
+    on_plane = bemcontact.solve(stated(bodies={"roller": roller}, contact_zones=lid | foot, **common))
+    on_block = bemcontact.solve(
+        stated(
+            bodies={"roller": roller, "block": hard}, contact_zones=lid,
+            contacts={"foot": {"between": ["roller", "block"]}}, **common,
+        )
+    )  # fmt: skip
+    assert on_plane.certified
+    assert on_block.certified
+    assert on_block.peak.pressure == pytest.approx(on_plane.peak.pressure, rel=0.003)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("moduli", [(1e3, 1e3, 1e3), (15400.0, 10400.0, 2200.0), (1200.0, 10300.0, 5500.0)])
+def test_a_roller_rests_on_two_others(moduli):
+    """No spin is left that something would have to hold. Statics: the upper weight W presses by W/(2 sin 60°) on each.
+
+    The motion of the bodies turns the lines between their centers by about the largest strain. Statics leaves it out.
+    """
+    centers = {"left": (-1, 1), "right": (1, 1), "upper": (0, 1 + 3**0.5)}
+    weight = {"gravity": {"density": 1.0, "acceleration": [0, -1]}}
+    bodies = {
+        name: elastic({"outer": [{**circle("rim", 1.0), "center": list(center)}]}, {}, modulus, loads=weight)
+        for (name, center), modulus in zip(centers.items(), moduli, strict=True)
+    }
+    walls = {"left": ([-2, 0], [1, 0]), "right": ([2, 0], [-1, 0])}
+    zones = {
+        name: {"edges": f"{name}/rim", "surface": {"kind": "plane", "point": point, "normal": normal}}
+        for name, (point, normal) in walls.items()
+    }
+    floor = {"edges": ["left/rim", "right/rim"], "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}
+    pairs = {"between": ["left", "right"]}, {"between": ["left", "upper"]}, {"between": ["right", "upper"]}
+    contacts = dict(zip(("middle", "on left", "on right"), pairs, strict=True))
+    result = bemcontact.solve(
+        stated(name="trough", bodies=bodies, contacts=contacts, contact_zones={**zones, "floor": floor}, accuracy=0.01)
+    )
+    assert result.certified
+    forces = result.footprint.forces
+    strain = 2 * math.pi / min(moduli)
+    assert forces["floor"] == pytest.approx((0, 3 * math.pi), abs=1e-9)
+    for name in ("on left", "on right"):
+        assert np.abs(forces[name]) == pytest.approx([math.pi / 2 / 3**0.5, math.pi / 2], rel=0.003 + 5 * strain)
 
 
 @pytest.mark.parametrize("way", [0.03, 0.2])

@@ -140,7 +140,7 @@ def test_pairs_are_the_same_whichever_side_is_first(below, modulus):
     """Each point is the pair of its pair. Both are on their common normal, which is opposite in the other order."""
     up = {"outer": halves(DISK["outer"][0], "top", "rim")}
     low = {"outer": halves(BELOW["circle"]["outer"][0], "rim", "bottom")} if below == "circle" else BELOW[below]
-    held = {"bottom": FIXED} if below != "ellipse" else {}  # a circle that may spin has its own normals
+    held = {"bottom": FIXED} if below != "ellipse" else {}  # a circle that may spin has a least part of the normals
     bodies = {"up": elastic(up, {"top": FIXED}, modulus), "low": elastic(low, held)}
     there, back = (
         problem(bodies, accuracy=0.01, touch=pair).zones["touch"].surface
