@@ -114,7 +114,7 @@ class Bond(NamedTuple):
 
 
 def eliminate(
-    compliance: Array, displacement: Array, changes: Array, weights: Array, load: Array, motions: Array, points: int
+    compliance: Array, displacement: Array, changes: Array, forces: Array, load: Array, motions: Array, points: int
 ) -> tuple[Array, Array, Bond]:
     """Compliance (n, n) and free displacement (n, s) of contact points of bodies that are bonded, and the bond.
 
@@ -122,13 +122,12 @@ def eliminate(
     ----------
     compliance, displacement : (n + b, n + b), (n + b, s) with the bonded directions last
     changes : (n + b, k) by motions that would move bonded bodies apart
-    weights : (n + b,) tributary lengths [L]
+    forces : (n + b, k) work of unit pressures and unit tractions in these motions [L]
     load : (k, s) work of the loadings in these motions [p L]
     motions : (3 b', k) coefficients of these motions for all bodies
     points : number n of contact points
     """
     n, k = points, changes.shape[1]
-    forces = weights[:, None] * changes
     matrix = np.block([[compliance[n:, n:], changes[n:]], [forces[n:].T, np.zeros((k, k))]])
     right = np.block([[-compliance[n:, :n], -displacement[n:]], [-forces[:n].T, -load]])
     scale = np.abs(compliance[n:, n:]).max(initial=0.0) or 1.0
