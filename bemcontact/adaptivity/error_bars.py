@@ -283,6 +283,8 @@ def _zone_bars(
 
 def _infinite(its: Sequence[Singularity]) -> str:
     """Say why a peak is infinite."""
+    if any(item.place.bonded for item in its):
+        return "infinite where a bond begins, because of different materials or a corner of the interface there"
     if any(item.place.end and not item.place.corner and not item.like_a_kink for item in its):
         return "infinite where contact reaches the end of its zone: a corner of the surface, or else a zone too short"
     if any(item.exponent == 0 for item in its):
@@ -323,7 +325,9 @@ def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
             length, errors, note = item.end - item.start, list[float | None](), ""
             for which, free in ends:
                 position = float(getattr(item, which))
-                bar, note = 0.0, "contact reaches a corner or the end of its zone"
+                bonded = solved.body.points.bonded_ends[run.number, int(which == "end")]
+                at_bond = bonded and position == (run.length if which == "end" else 0.0)
+                bar, note = 0.0, "contact reaches " + ("the bond" if at_bond else "a corner or the end of its zone")
                 if len(before) != len(after):
                     bar, note = None, CHANGES
                 elif free:
@@ -394,4 +398,5 @@ def _intensity(
     used = (s > low) & (s <= high) & (pressure > 0)
     if used.sum() < 2 * degree:
         return None
-    return float(np.polynomial.Polynomial.fit(s[used], pressure[used] * s[used] ** item.exponent, degree)(0.0))
+    along = np.sqrt(s[used]) if item.place.bonded else s[used]  # beside a bond λ is a multiple of 1/2
+    return float(np.polynomial.Polynomial.fit(along, pressure[used] * s[used] ** item.exponent, degree)(0.0))

@@ -6,7 +6,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved
-from bemcontact.adaptivity.wedge_exponents import Face, OppositeWedge, contact_face, slow_change, wedge_exponents
+from bemcontact.adaptivity.wedge_exponents import (
+    BONDED,
+    Face,
+    OppositeWedge,
+    beside_bond,
+    contact_face,
+    slow_change,
+    wedge_exponents,
+)
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
 from bemcontact.bem.mesh import CORNER
@@ -14,6 +22,8 @@ from bemcontact.problems.nearest_places import surface_corners
 
 GROWING = 1.04, 1.9
 """Growth of the pressure at a place by bisection between which it may be infinite."""
+PASSES = 3
+"""Number of passes after which growth is looked at."""
 LASTING = 0.6
 """Least growth at a place over that of the pass before, both less one."""
 FINER = 0.75
@@ -51,6 +61,8 @@ class ContactPlace:
     """Whether contact reaches the end of its zone there."""
     corner: bool = False
     """Whether the boundary has a corner there, or inside the zone the boundary or the surface."""
+    bonded: bool = False
+    """Whether a bond begins there."""
     kink: float = 0.0
     """Angle by which surface and body, both as drawn, turn away from each other there [rad]."""
 
@@ -84,7 +96,7 @@ class _History:
 
     def grows(self) -> bool:
         """Whether the pressure grew twice running, and no slower, on smaller elements."""
-        if len(self.growth) < 3:
+        if len(self.growth) < PASSES:
             return False
         before, now = self.growth[-2:]
         low, high = GROWING
@@ -107,6 +119,10 @@ class Watch:
             history.growth.append(_growth(difference, place))
             elements = elements_at(coarse, coarse.run(place.run), place.position)
             history.element.append(float(coarse.weights[elements].sum(axis=1).min()))
+            if place.bonded:
+                if len(history.growth) >= PASSES:  # until then elements there are too long for its intensity
+                    history.exponent, history.exact = _beside_bond(difference, place), True
+                continue
             if history.grows() or (history.exponent is not None and GROWING[0] < history.growth[-1] < GROWING[1]):
                 known = exponents_at(coarse, one, coarse.run(place.run), place.position)
                 measured = float(np.log2(history.growth[-1]))
@@ -133,6 +149,10 @@ def recognized(difference: MeshDifference) -> tuple[Singularity, ...]:
     coarse, (one, _) = difference.coarse, difference.pair
     found: list[Singularity] = []
     for place in _places(difference):
+        if place.bonded:
+            if (exponent := _beside_bond(difference, place)) is not None:
+                found.append(Singularity(place=place, exponent=exponent))
+            continue
         known = exponents_at(coarse, one, coarse.run(place.run), place.position)
         exponent, near = _nearest(float(np.log2(_growth(difference, place))), known)
         if near or _is_logarithmic(difference, place):
@@ -165,6 +185,16 @@ def exponents_at(solved: Solved, answer: CaseAnswer, run: ZoneRun, position: flo
     return wedge_exponents(*wedge, opposite)
 
 
+def _beside_bond(difference: MeshDifference, place: ContactPlace) -> float | None:
+    """Exponent of the pressure where a bond begins, if it raises the peak beyond the accuracy asked; else None.
+
+    It may be infinite as soon as the materials differ, but it is a small part of the infinite shear of the bond, which
+    meshes tell sooner than its growth.
+    """
+    known = exponents_at(difference.fine, difference.pair[1], difference.fine.run(place.run), place.position)
+    return known[0] if known and _is_logarithmic(difference, place) else None
+
+
 def _is_logarithmic(difference: MeshDifference, place: ContactPlace) -> bool:
     """Whether a corner raises the peak like ln r, or nearly so, beyond the accuracy asked."""
     return _rise(difference, place) > (difference.fine.body.problem.asked_accuracy or 0.0)
@@ -187,6 +217,8 @@ def _rise(difference: MeshDifference, place: ContactPlace) -> float:
     wedge, loads, opposite = _wedges_at(fine, answer, run, place.position)
     _, length = contact_beside(run, answer.stretches[run.number], place.position)
     size = max(float(fine.weights[elements].sum(axis=1).min()) / (length or run.length), SHARP)
+    if place.bonded:
+        return max(0.0, (at + _rise_beside_bond(fine, answer, run, place, SHARP * (length or run.length))) / peak - 1)
     if all(face.contact for face in wedge[2]) and abs(wedge[1] - np.pi) < CORNER:
         softer = (1.0, opposite.stiffness) if opposite else (1.0,)
         slope = _slope(fine, place.kink, fine.body.part_of(int(elements[0]))) * min(softer)
@@ -196,6 +228,23 @@ def _rise(difference: MeshDifference, place: ContactPlace) -> float:
         return 0.0
     sharp = max(change.at(face, at, SHARP / size) for face in range(2) if wedge[2][face].contact)
     return max(0.0, sharp / peak - 1)
+
+
+def _rise_beside_bond(solved: Solved, answer: CaseAnswer, run: ZoneRun, place: ContactPlace, near: float) -> float:
+    """What infinite shear of a bond adds to the pressure [p] between the first element of contact and a place near by.
+
+    It is negative where it takes pressure away, so that contact ends before the bond.
+    """
+    wedge, _, opposite = _wedges_at(solved, answer, run, place.position)
+    state = beside_bond(*wedge, opposite)
+    if state is None:
+        return 0.0
+    mesh, elements = solved.mesh, run_elements(solved, run)
+    at_start = 2 * place.position < run.length
+    own = int(elements[0] if at_start else elements[-1])
+    beyond = int(mesh.before[own] if at_start else mesh.elements[own, 2])
+    (own_half, half), middle = mesh.lengths[[own, beyond]] / 2, complex(*answer.traction[beyond, 1])
+    return state.intensity(middle, half) * (near**-state.exponent - own_half**-state.exponent)
 
 
 def _slope(solved: Solved, kink: float, part: int) -> float:
@@ -253,6 +302,8 @@ def _face(answer: CaseAnswer, element: int, direction: float) -> Face:
     """What holds the face of a wedge with an element, from the direction of the boundary there."""
     if answer.presses(element):
         return contact_face(np.exp(1j * (direction - np.pi / 2)))
+    if element in answer.condensation.body.bonds.element:
+        return BONDED
     x, y = answer.condensation.body.acting.values.traction_unknown[element].tolist()
     return Face(1.0, (x, y))
 
@@ -267,8 +318,12 @@ def _places(difference: MeshDifference) -> Iterator[ContactPlace]:
                 if not free:
                     at = position % run.length if run.closed else position
                     end = not run.closed and min(at, run.length - at) <= 1e-9 * run.length
-                    corner = not end or _corner_of_body(coarse, run, after=2 * at > run.length)
-                    yield ContactPlace(run=run.number, zone=run.zone, position=at, end=end, corner=corner)
+                    after = 2 * at > run.length
+                    corner = not end or _corner_of_body(coarse, run, after=after)
+                    bonded = end and bool(coarse.body.points.bonded_ends[run.number, int(after)])
+                    yield ContactPlace(
+                        run=run.number, zone=run.zone, position=at, end=end, corner=corner, bonded=bonded
+                    )
         kinks = dict(_turns_of_surface(coarse, run))
         for position, turn in zip(run.joints.tolist(), run.turn.tolist(), strict=True):
             same = [at for at in kinks if abs(at - position) <= SAME * run.length]

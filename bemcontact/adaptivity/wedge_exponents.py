@@ -6,7 +6,9 @@ are singular (Williams 1952). Frictionless contact with a straight rigid face, u
 free face, sin 2λω + λ sin 2ω = 0, which is λ = 1/2 on a half-plane, ω = π.
 
 Contact of two elastic wedges joins their equations: on both faces shear is zero, and normal tractions and displacements
-are the same (Dundurs and Lee 1972).
+are the same (Dundurs and Lee 1972). On bonded faces both components of both are the same. At the tip of a closed
+debond on a straight interface λ = 1/2: shear is infinite on the bond, and if Dundurs' β is not zero, so is pressure on
+the contact, as |β| times that shear (Comninou 1977).
 
 Constant tractions on the faces make λ = 1. Where that is singular too, as in contact beside a free face at a right
 angle, the pressure changes like ln r; near to it, hardly less slowly.
@@ -51,11 +53,13 @@ class Face(NamedTuple):
     direction : complex number of the first direction; the second is it times i
     held : whether the displacement in each direction is prescribed, else the traction
     contact : whether pressure acts on it
+    bonded : whether it moves with the face of the opposite wedge, as `BONDED` does; without one, it is held
     """
 
     direction: complex
     held: tuple[bool, bool]
     contact: bool = False
+    bonded: bool = False
 
 
 def contact_face(normal: complex) -> Face:
@@ -64,6 +68,8 @@ def contact_face(normal: complex) -> Face:
 
 
 FREE = Face(1.0, (False, False))
+BONDED = Face(1.0, (True, True), bonded=True)
+"""Its direction is that of the face on the other side."""
 
 
 class OppositeWedge(NamedTuple):
@@ -100,6 +106,46 @@ def wedge_exponents(
         return ()
     wedge = (start, angle, faces, poisson_ratio, opposite)
     return tuple(1 - power for power in _roots(wedge, GRID) if _presses(wedge, power))
+
+
+class BesideBond(NamedTuple):
+    """The state with the largest exponent where a bond begins beside contact, up to a factor.
+
+    Parameters
+    ----------
+    exponent : α
+    pressure : on the contact at r = 1
+    traction : on the wedge by the bond at r = 1, x + iy
+    """
+
+    exponent: float
+    pressure: float
+    traction: complex
+
+    def intensity(self, traction: complex, distance: float) -> float:
+        """Factor K of the pressure K r^-α that goes with a traction of the bond at a distance [L] from its tip."""
+        size = (traction * self.traction.conjugate()).real / abs(self.traction) ** 2
+        return size * self.pressure * distance**self.exponent
+
+
+@lru_cache(maxsize=256)
+def beside_bond(
+    start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, opposite: OppositeWedge | None = None
+) -> BesideBond | None:
+    """State of infinite pressure where a bond begins beside contact; None if there is none. Parameters as above."""
+    known = wedge_exponents(start, angle, faces, poisson_ratio, opposite)
+    if not known:
+        return None
+    power = 1 - known[0]
+    state = np.linalg.svd(_conditions((start, angle, faces, poisson_ratio, opposite), power))[2][-1, :4]
+    pressure, traction = 0.0, 0j
+    for face, at, sign in zip(faces, (start, start + angle), OUTWARD, strict=True):
+        outward = sign * complex(_field(at, power, poisson_ratio)[1] @ state)
+        if face.contact:
+            pressure = -(outward * np.conj(face.direction)).real
+        if face.bonded:
+            traction = outward
+    return BesideBond(known[0], float(pressure), traction) if abs(traction) > UNPRESSED else None
 
 
 @lru_cache(maxsize=256)
@@ -230,8 +276,15 @@ def _conditions(wedge: Wedge, power: float | Array) -> Array:
     other_faces, rows = _face_rows(*other[:4], power), list[tuple[Array | None, Array | None]]()
     for face, its, across in zip(faces, own_faces, other.faces[::-1], strict=True):
         joined = face.contact and across.contact  # a face that a third body touches is held as by a rigid one
+        if face.bonded and across.bonded:
+            continue
         rows += [(its.traction[1], None)] if joined else [(row, None) for row in its.held]
     for face, its, touched, theirs in zip(other.faces, other_faces, faces[::-1], own_faces[::-1], strict=True):
+        if face.bonded and touched.bonded:
+            rows += [(one, -two) for one, two in zip(theirs.traction, its.traction, strict=True)]
+            moved = zip(theirs.displacement, its.displacement, strict=True)
+            rows += [(one, -two / other.stiffness) for one, two in moved]
+            continue
         if not (face.contact and touched.contact):
             rows += [(None, row) for row in its.held]
             continue
@@ -251,7 +304,10 @@ def _given(wedge: Wedge, loads: tuple[complex, ...]) -> Array:
     for number, (face, load) in enumerate(zip(faces, loads, strict=True)):
         directions = zip((face.direction, 1j * face.direction), face.held, strict=True)
         values = [0.0 if held else OUTWARD[number % 2] * (load * np.conj(at)).real for at, held in directions]
-        if other is None or not (face.contact and (*other.faces[::-1], *own[::-1])[number].contact):
+        across = None if other is None else (*other.faces[::-1], *own[::-1])[number]
+        if across and face.bonded and across.bonded:
+            given += [0.0] * (0 if number < 2 else 4)
+        elif across is None or not (face.contact and across.contact):
             given += values
         else:
             given += values[1:] if number < 2 else [values[1], 0.0, 0.0]

@@ -69,7 +69,24 @@ def displaced(
             sure, pressed = own.copy(), contact.pressed(solution.pressure, solution.displacement)
             sure[own] = ~tip
             _see_from_other_side(gaps, zone, points, own, sure, pressed, linear, found)
+    at_tip = _at_tip_of_bond(points, found.motion)
+    found.change[at_tip], found.turn[at_tip], found.other[at_tip] = 0.0, 0.0, False
     return found
+
+
+def _at_tip_of_bond(points: ContactPoints, motion: Array) -> BoolArray:
+    """Whether points (n,) are so near to the begin of a bond that linear theory does not tell their displaced places.
+
+    Both sides slide there by the root of the distance. So this is the first element, whose places between nodes slide
+    otherwise, and what slides by more than its distance.
+    """
+    beside, mesh = np.zeros(len(points), bool), points.mesh
+    for run, end in np.argwhere(points.bonded_ends).tolist():
+        element = points.elements_of_run[run][-end]
+        away = np.hypot(*(mesh.nodes[points.node] - mesh.nodes[mesh.elements[element, 2 * end]]).T)
+        near = np.isin(points.node, mesh.elements[element]) | (away <= np.hypot(*motion.T))
+        beside |= near & (points.run == run)
+    return beside
 
 
 def _see_from_other_side(

@@ -97,6 +97,17 @@ class Body:
             changes += motions.of_body(number).gap_changes(self.unit_pressures(part), part.mesh, count)
         return changes
 
+    def all_work(self, motions: FreeMotions) -> Array:
+        """Work (n + b, k) of unit pressures and unit tractions of bonds in free motions, over that amplitude [L]."""
+        work = np.zeros((len(self.points) + len(self.bonds), len(motions)))
+        for number, part in enumerate(self.mesh.parts):
+            pressures, mesh = self.unit_pressures(part), part.mesh
+            at = pressures.element, pressures.local
+            moved = motions.of_body(number).displacement(mesh.nodes[mesh.elements[at]])
+            forces = mesh.tributary[at][:, None] * pressures.traction
+            np.add.at(work, pressures.number[pressures.pressure], np.einsum("qx,qxk->qk", forces, moved))
+        return work
+
     @cached_property
     def shear_moduli(self) -> Array:
         """Shear modulus (m,) [p] of the body of each element."""

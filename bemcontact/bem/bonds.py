@@ -7,6 +7,7 @@ The spin of a body without friction is held in the same way. No pressure spins a
 those of the stiffer side more than its own, miss its center by a little, and contact would have to hold this spin.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple, Self
 
@@ -28,15 +29,15 @@ class BondedPoints:
     Parameters
     ----------
     mesh : Mesh
-    weights : (b,) tributary length of the first node, or perimeter of the body [L]
+    count : b
     element, local, component : (q,) the (element, local node) pairs on which a unit traction of each component acts
     tractions : (q, 2) by it there: nodal forces of two bodies are equal and opposite
     node, changed : (r,) nodes that move along with each component
-    change : (r, 2) of it by their unit displacements along x and y; the nodal forces over the weight
+    change : (r, 2) of it by their unit displacements along x and y, in proportion to the nodal forces
     """
 
     mesh: Mesh
-    weights: Array
+    count: int
     element: IntArray
     local: IntArray
     component: IntArray
@@ -72,26 +73,22 @@ class BondedPoints:
             for at, factor in ((own, np.ones(len(pair))), (opposite, -ratio[pair]))
         ]
         each, sign = np.arange(count), np.eye(2)[axis]
-        moves, weights = [(node[point], each, sign), (other[point], each, -sign)], [lengths[0][point]]
-        for part, on_mesh in zip(problem.parts, mesh.parts, strict=True):
-            if (center := problem.spin_centers.get(part.name)) is not None:
-                around, of_node = _around(on_mesh.mesh, np.array(center))
-                own, nodes = np.arange(len(mesh.elements))[on_mesh.elements], np.arange(len(mesh.nodes))[on_mesh.nodes]
-                at = np.repeat(own, 3), np.tile(np.arange(3), len(own))
-                shares.append((*at, np.full(3 * len(own), count), around[on_mesh.mesh.elements].reshape(-1, 2)))
-                moves.append((nodes, np.full(len(nodes), count), around * (of_node / of_node.sum())[:, None]))
-                weights, count = [*weights, of_node.sum(keepdims=True)], count + 1
+        moves = [(node[point], each, sign), (other[point], each, -sign)]
+        for traction, motion in _spins(problem, mesh):
+            shares.append((*traction[:2], np.full(len(traction[0]), count), traction[2]))
+            moves.append((motion[0], np.full(len(motion[0]), count), motion[1]))
+            count += 1
         element, at, component, tractions = (np.concatenate(part) for part in zip(*shares, strict=True))
         free = component >= 0
         nodes, changed, change = (np.concatenate(part) for part in zip(*moves, strict=True))
         return cls(
-            mesh=mesh, weights=np.concatenate(weights), element=element[free], local=at[free],
+            mesh=mesh, count=count, element=element[free], local=at[free],
             component=component[free], tractions=tractions[free], node=nodes, changed=changed, change=change,
         )  # fmt: skip
 
     def __len__(self) -> int:
         """Return the number of components."""
-        return len(self.weights)
+        return self.count
 
     def added_to(self, pressures: UnitPressures, part: MeshPart, points: int) -> UnitPressures:
         """The unit pressures on the mesh of one body, then its unit tractions, with numbers behind those of points."""
@@ -113,12 +110,24 @@ class BondedPoints:
         )
 
 
-def _around(mesh: Mesh, center: Array) -> tuple[Array, Array]:
-    """Traction (N, 2) around a center at the nodes of a body, of which no force is left, and their lengths (N,) [L]."""
-    x, y = (mesh.nodes - center).T
-    around = np.column_stack([-y, x]) / np.hypot(x, y).max()
-    lengths = np.bincount(mesh.elements.ravel(), mesh.tributary.ravel())
-    return around - np.average(around, axis=0, weights=lengths), lengths
+def _spins(problem: Problem, mesh: Mesh) -> Iterator[tuple[tuple[IntArray, IntArray, Array], tuple[IntArray, Array]]]:
+    """Traction around the center of each body that might spin, of which no force is left, and its motion.
+
+    They are elements, local nodes and tractions (q, 2); nodes and their parts (r, 2) in the motion.
+    """
+    for part, (on_mesh, elements, nodes) in zip(problem.parts, mesh.parts, strict=True):
+        if (center := problem.spin_centers.get(part.name)) is not None:
+            x, y = (on_mesh.nodes - center).T
+            lengths = np.bincount(on_mesh.elements.ravel(), on_mesh.tributary.ravel())
+            around = np.column_stack([-y, x]) / np.hypot(x, y).max()
+            around -= np.average(around, axis=0, weights=lengths)
+            own = np.arange(len(mesh.elements))[elements]
+            element, local = np.repeat(own, 3), np.tile(np.arange(3), len(own))
+            part_of_all = (lengths / lengths.sum())[:, None]
+            yield (
+                (element, local, around[on_mesh.elements].reshape(-1, 2)),
+                (np.arange(len(mesh.nodes))[nodes], around * part_of_all),
+            )
 
 
 class Bond(NamedTuple):
@@ -135,7 +144,7 @@ class Bond(NamedTuple):
 
 
 def eliminate(
-    compliance: Array, displacement: Array, changes: Array, weights: Array, load: Array, motions: Array, points: int
+    compliance: Array, displacement: Array, changes: Array, forces: Array, load: Array, motions: Array, points: int
 ) -> tuple[Array, Array, Bond]:
     """Compliance (n, n) and free displacement (n, s) of contact points of bodies that are bonded, and the bond.
 
@@ -143,13 +152,12 @@ def eliminate(
     ----------
     compliance, displacement : (n + b, n + b), (n + b, s) with the components of bonds last
     changes : (n + b, k) by motions that would move bonded bodies apart
-    weights : (n + b,) tributary lengths [L]
+    forces : (n + b, k) work of unit pressures and unit tractions in these motions [L]
     load : (k, s) work of the loadings in these motions [p L]
     motions : (3 b', k) coefficients of these motions for all bodies
     points : number n of contact points
     """
     n, k = points, changes.shape[1]
-    forces = weights[:, None] * changes
     matrix = np.block([[compliance[n:, n:], changes[n:]], [forces[n:].T, np.zeros((k, k))]])
     right = np.block([[-compliance[n:, :n], -displacement[n:]], [-forces[:n].T, -load]])
     scale = np.abs(compliance[n:]).max(initial=0.0) or 1.0

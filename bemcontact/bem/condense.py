@@ -194,7 +194,7 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
             compliance,
             free_displacement,
             body.all_changes(body.apart),
-            np.append(points.tributary, body.bonds.weights),
+            body.all_work(body.apart),
             body.motion_load(body.apart),
             body.apart.of_bodies.T,
             len(points),

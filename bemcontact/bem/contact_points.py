@@ -55,6 +55,10 @@ class ContactPoints:
     may continue smoothly beyond such a node, as at the tip of a closed slit. The end node then has the pressure of the
     middle node of the element, whose tributary length includes that of the end node.
 
+    So it is where a bond begins. The gap of this node is zero whatever the pressure is, so that it would be no unknown
+    of a complementarity problem with one solution. The traction of the bond is another one, on its own elements: beside
+    a debond it is infinite, with shear alone if the debond is closed.
+
     Parameters
     ----------
     mesh : Mesh
@@ -72,6 +76,7 @@ class ContactPoints:
         surface, else not a number [L]
     held_points : (runs, 2, 2) these nodes [L]
     tied : (N,) for each node the least of all that bonds make move with it
+    bonded_ends : (runs, 2) whether a bond begins at the first and the last node of a piece
     elements_of_run : elements of each piece in order; none for a corner of the body that stands on a face by itself
     zone_of_run : number of the zone of each piece
     held : nodes of the zones that are no points
@@ -94,6 +99,7 @@ class ContactPoints:
     held_arc: Array
     held_points: Array
     tied: IntArray
+    bonded_ends: BoolArray
     elements_of_run: tuple[IntArray, ...] = ()
     zone_of_run: tuple[int, ...] = ()
     held: "HeldNodes | None" = None
@@ -112,7 +118,8 @@ class ContactPoints:
         share = np.flatnonzero(facing >= 0)
         element, local, point = facing[share], 2 - self.local[share], self.point[share]
         turned = (self.sense < 0).astype(int)
-        straight = turned[share] == 0
+        own = self.mesh.elements[self.element[share], self.local[share]]
+        straight = (turned[share] == 0) & (self.tied[own] == self.tied[self.node[point]])
         node[point[straight]] = self.mesh.elements[element, local][straight]
         lengths, opposite = np.zeros((2, 2, len(self)))
         np.add.at(lengths, (turned, self.point), self.mesh.tributary[self.element, self.local])
@@ -263,25 +270,28 @@ def contact_points(
         for elements, closed in _between(mesh, runs(mesh, in_zone), faces.differs[:, 0] | apart):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
             gap, normals, lies = faces.along(nodes, closed=closed)
-            loose = ~_held_along(normals, values.displacement_given[nodes])
+            opposite = _along(across, nodes, closed=closed)
+            bonded = (opposite >= 0) & (tied[nodes] == tied[opposite])
+            loose = ~_held_along(normals, values.displacement_given[nodes]) & ~bonded
             free = loose & ~(choice[nodes] & ~faces.turned(mesh, elements, closed=closed))
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
             fixed = not closed and name not in tool_of and not other
+            stuck = ~loose & ~bonded
             on_surface = _on_surface(mesh, (values, *cases), nodes, normals, gap)
             goes_on = _goes_on(mesh, values, elements, normals, on_surface) if fixed else (False, False)
-            held = np.where(~loose & on_surface & fixed, arc, np.nan)[[0, -1]]
+            at_bond = bonded[[0, -1]] & (not closed)
+            held = np.where((~loose & on_surface & fixed) | (bonded & on_surface), arc, np.nan)[[0, -1]]
             pieces.append(
                 _Piece(
-                    number, tool_of.get(name), elements, elements, length, goes_on, nodes[free], arc[free],
-                    normals[free], lies[free], gap[free], _along(across, nodes, closed=closed)[free], held,
-                    mesh.nodes[nodes[[0, -1]]],
-                    HeldNodes(np.full(len(nodes), number)[~loose], nodes[~loose], normals[~loose], gap[~loose]),
+                    number, tool_of.get(name), elements, elements, length, goes_on, at_bond, nodes[free], arc[free],
+                    normals[free], lies[free], gap[free], opposite[free], held, mesh.nodes[nodes[[0, -1]]],
+                    HeldNodes(np.full(len(nodes), number)[stuck], nodes[stuck], normals[stuck], gap[stuck]),
                 )
             )  # fmt: skip
         if not any(len(piece.nodes) for piece in pieces if piece.zone == number) and (in_zone & choice[middles]).any():
             message = "no node of its edges is turned to the surface; give these edges more elements"
             raise ProblemError(Issue(path=("contact_zones", name, "edges"), message=message))
-        pieces += _standing(mesh, number, tool_of.get(name), in_zone, faces, across, values.displacement_given)
+        pieces += _standing(mesh, number, tool_of.get(name), in_zone, faces, across, values.displacement_given, tied)
     facing = {number: mesh.facing[name] for number, name in enumerate(problem.zones) if name in mesh.facing}
     return replace(_joined(mesh, pieces, tied), facing=facing)
 
@@ -380,16 +390,20 @@ def _between(mesh: Mesh, runs: Iterable[tuple[IntArray, bool]], divides: BoolArr
 
 
 def _standing(
-    mesh: Mesh, zone: int, tool: str | None, in_zone: BoolArray, faces: _NodeFaces, across: IntArray, given: BoolArray
-) -> Iterator["_Piece"]:
+    mesh: Mesh, zone: int, tool: str | None, in_zone: BoolArray, faces: _NodeFaces, across: IntArray, given: BoolArray,
+    tied: IntArray,
+) -> Iterator["_Piece"]:  # fmt: skip
     """Corners of the body that stand on a face of the surface to which neither side of them is turned."""
     for node in np.flatnonzero(faces.differs[: len(mesh.elements), 1] & (in_zone | in_zone[mesh.before])):
         elements = np.array([element for element in (mesh.before[node], node) if in_zone[element]])
         normals, nodes = faces.normals[[node], 1], np.array([node])
-        if not _held_along(normals, given[nodes])[0]:
+        opposite = across.max(axis=0)[node]
+        bonded = opposite >= 0 and tied[node] == tied[opposite]
+        if not (bonded or _held_along(normals, given[nodes])[0]):
             yield _Piece(
-                zone, tool, elements, elements[:0], np.inf, (False, False), nodes, np.zeros(1), normals, normals,
-                faces.gap[[node], 1], across.max(axis=0)[nodes], np.full(2, np.nan), mesh.nodes[[node, node]], None,
+                zone, tool, elements, elements[:0], np.inf, (False, False), np.zeros(2, bool), nodes, np.zeros(1),
+                normals, normals, faces.gap[[node], 1], np.array([opposite]), np.full(2, np.nan),
+                mesh.nodes[[node, node]], None,
             )  # fmt: skip
 
 
@@ -411,7 +425,7 @@ def _goes_on(
 
 
 class _Piece(NamedTuple):
-    """One run: zone, tool, elements beside its points and its own, length, points, held ends, and what is beyond.
+    """One run: zone, tool, elements beside its points and its own, length, what is beyond its ends, points, held ends.
 
     Points have the opposite node too, -1 on a rigid surface.
     """
@@ -422,6 +436,7 @@ class _Piece(NamedTuple):
     own: IntArray
     length: float
     goes_on: tuple[bool, bool]
+    bonded: BoolArray
     nodes: IntArray
     arc: Array
     normals: Array
@@ -457,7 +472,8 @@ def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray) -> ContactPoints:
         sense_of = np.ones(len(mesh.nodes))
         sense_of[piece.nodes] = sense[first : first + len(piece.nodes)]
         carrier, signs = point_of[mesh.elements[piece.elements]], sense_of[mesh.elements[piece.elements]]
-        for goes_on, element, end in zip(piece.goes_on, (0, -1), (0, 2), strict=True):
+        beyond = piece.bonded | piece.goes_on
+        for goes_on, element, end in zip(beyond.tolist(), (0, -1), (0, 2), strict=True):
             if goes_on:
                 carrier[element, end] = carrier[element, 1]
         elements.append(np.repeat(piece.elements, 3))
@@ -487,6 +503,7 @@ def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray) -> ContactPoints:
         held_arc=held_arc,
         held_points=held_points,
         tied=tied,
+        bonded_ends=np.array([piece.bonded for piece in pieces]),
         elements_of_run=tuple(piece.own for piece in pieces),
         zone_of_run=tuple(piece.zone for piece in pieces),
         held=HeldNodes(*map(np.concatenate, zip(*(piece.held for piece in pieces if piece.held), strict=True))),

@@ -6,6 +6,7 @@ normal, which has a node there. So the elements of the second body end at the pa
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -165,6 +166,9 @@ def _matched(
             raise ProblemError(_too_short(item))
         covered.append((places, nodes, item, last))
     covered.sort(key=lambda part: float(part[0][0]))
+    for (places, _, item, _), (others, _, other, _) in pairwise(covered):
+        if others[0] < places[-1] - SAME and item.part.edge != other.part.edge:
+            raise ProblemError(_overlapping(item, other))
     keep = np.ones(len(own), bool)
     for places, *_ in covered:
         at = np.clip(np.searchsorted(own, places[[0, -1]]), 1, len(own) - 1)
@@ -210,6 +214,15 @@ def _crossing(item: Matched) -> Issue:
     message = (
         f"'{item.part.edge}' is so far from '{item.onto}' that pairs of their points cross each other; name the edges "
         "that come to touch, or cut the edge where it is far away"
+    )
+    return Issue(path=("contacts", item.contact, "between"), message=message)
+
+
+def _overlapping(item: Matched, other: Matched) -> Issue:
+    """Issue of two contacts that have pairs on one part of an edge, because edges are far apart there."""
+    message = (
+        f"'{item.part.edge}' and '{other.part.edge}' are opposite to one part of '{item.onto}', so far from it that "
+        "they cannot touch there; name whole bodies in 'between', or cut these edges and name what comes to touch"
     )
     return Issue(path=("contacts", item.contact, "between"), message=message)
 

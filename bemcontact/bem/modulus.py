@@ -47,10 +47,9 @@ def modulus_rate(one: Condensation, doubled: Condensation, modulus: float, press
         acting = np.append(pressure, bond.traction[0] @ pressure + bond.traction[1] @ one.factors)
     rate = -2 / modulus * ((displacement - less) @ one.factors + (compliance - softer) @ acting)
     if bond is not None:
-        changes = body.all_changes(body.apart)
-        weights = np.append(body.points.tributary, body.bonds.weights)
+        changes, work = body.all_changes(body.apart), body.all_work(body.apart)
         balanced = np.zeros((changes.shape[1], 1))
-        rate = eliminate(compliance, rate[:, None], changes, weights, balanced, body.apart.of_bodies.T, n)[1][:, 0]
+        rate = eliminate(compliance, rate[:, None], changes, work, balanced, body.apart.of_bodies.T, n)[1][:, 0]
     motions = body.algebra
     return rate - motions.rigid_motions @ motions.amplitudes_of(rate)
 

@@ -460,7 +460,8 @@ class SurfaceGaps(DisplacedSurfaces):
     def _may_meet(self, zone: str) -> BoolArray:
         """Whether each element (m,) is compared with a surface: of a contact of two bodies those of the first alone.
 
-        Where both sides are on one body, the edges of the first side alone.
+        Where both sides are on one body, the edges of the first side alone. Elements that are bonded to the second body
+        move with it.
         """
         mesh, surface, edges = self.outline.mesh, self.surfaces[zone], self.problem.edges_of(zone)
         if not isinstance(surface, BodySurface):
@@ -468,7 +469,18 @@ class SurfaceGaps(DisplacedSurfaces):
         first = self.problem.part_of(edges[0])
         if first == surface.body:
             return np.isin(mesh.edge_names, edges)[mesh.edge]
-        return np.array([self.problem.part_of(name) == first for name in mesh.edge_names])[mesh.edge]
+        of_first = np.array([self.problem.part_of(name) == first for name in mesh.edge_names])
+        return of_first[mesh.edge] & ~self._bonded_to(surface.body)
+
+    def _bonded_to(self, body: str) -> BoolArray:
+        """Whether each element (m,) is bonded to a body."""
+        mesh = self.outline.mesh
+        bonded = np.zeros(len(mesh.elements), bool)
+        for bond in self.problem.bonded:
+            if body in (sides := self.problem.sides_of(bond)):
+                facing, own = mesh.facing[bond], np.flatnonzero(mesh.facing[bond] >= 0)
+                bonded[own if sides[1] == body else facing[own]] = True
+        return bonded
 
     def _near(self, zone: str) -> BoolArray:
         """Whether each element (m,) may touch a surface: no place of it is farther from its middle than its length."""

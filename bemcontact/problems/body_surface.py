@@ -149,7 +149,8 @@ class BodySurface:
             at = np.flatnonzero((fraction == end) & corners[number, end])
             tilted = abs(cross(offset[at], normals[at])) > AT_END * away[at]
             at = at[tilted & (away[at] > flush)]
-            side = np.where(np.sum(offset[at] * sums[number[at], end], axis=1) < 0, -1.0, 1.0)
+            outward = np.sum(offset[at] * sums[number[at], end], axis=1)
+            side = np.where(outward < -AT_END * away[at], -1.0, 1.0)  # straight on from an end is not inside
             normals[at], corner[at] = side[:, None] * offset[at] / away[at, None], True
         return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner, at_corner)
 

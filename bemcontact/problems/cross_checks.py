@@ -15,6 +15,7 @@ from bemcontact.problems.curves import Edge
 from bemcontact.problems.geometry import MOST_ELEMENTS, Line
 from bemcontact.problems.key_path import RawValue
 from bemcontact.problems.load_case import LoadCase
+from bemcontact.problems.outlines import MIRRORED
 from bemcontact.problems.reference import Hertz, Table, Values
 from bemcontact.problems.rigid_surface import Circle, DeflectedContour, Plane, RigidSurface, Shape
 from bemcontact.problems.surface_lines import Polyline, Spline
@@ -69,6 +70,8 @@ def _edge_names(boundary: RawValue) -> list[str] | None:
     loops = [boundary.below(Boundary, "outer"), *boundary.below(Boundary, "holes").each()]
     names = [edge.below(Line, "name").value for loop in loops for edge in loop.each()]
     readable = all(any(loop.each()) for loop in loops) and all(isinstance(name, str) for name in names)
+    if readable and boundary.below(Boundary, "mirror").value is not None:
+        names += [f"{name}{MIRRORED}" for name in names]
     return names if readable else None
 
 

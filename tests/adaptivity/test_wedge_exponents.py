@@ -9,9 +9,11 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from bemcontact.adaptivity.wedge_exponents import (
+    BONDED,
     FREE,
     Face,
     OppositeWedge,
+    beside_bond,
     contact_face,
     slow_change,
     stress_is_infinite,
@@ -153,6 +155,51 @@ def test_a_corner_on_an_elastic_plane_has_a_slow_power_however_close_to_one(degr
     assert change is not None
     assert change.rate == pytest.approx(power - 1, rel=1e-6)
     assert change.at(0, 1.0, 1e-3) == pytest.approx(1e-3 ** (power - 1), rel=1e-6)
+
+
+def tip_of_bond(turn, ratios, stiffness, after):
+    """Wedges at the tip of a closed debond on a line at an angle, with the bond after it on the first one or before."""
+    normal = np.exp(1j * (turn - pi / 2))
+    first, second = contact_face(normal), contact_face(-normal)
+    own, across = ((BONDED, first), (second, BONDED)) if after else ((first, BONDED), (BONDED, second))
+    return turn, pi, own, ratios[0], OppositeWedge(turn - pi, pi, across, ratios[1], stiffness)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(-pi, pi), st.tuples(st.floats(0.0, 0.49), st.floats(0.0, 0.49)), st.floats(0.01, 100.0), st.booleans())
+def test_pressure_beside_a_bond_is_a_part_of_the_shear_on_it(turn, ratios, stiffness, after):
+    """λ = 1/2, with |β| for the intensity of the pressure over that of the shear (Comninou 1977).
+
+    A density b of slip on a common line has the stresses τ = (C/π) ∫ b(ξ)/(x - ξ) dξ and σ_y = β C b(x) there. On the
+    closed debond τ = 0, and b = K/(C sqrt(s)) for K/sqrt(s) of shear before it.
+    """
+    kappa = 3 - 4 * np.array(ratios)
+    beta = ((kappa[1] - 1) - stiffness * (kappa[0] - 1)) / ((kappa[1] + 1) + stiffness * (kappa[0] + 1))
+    if abs(beta) < 1e-3:
+        return
+    tip = tip_of_bond(turn, ratios, stiffness, after)
+    assert wedge_exponents(*tip) == pytest.approx((0.5,), abs=NEAR)
+    state = beside_bond(*tip)
+    assert state is not None
+    assert abs(state.pressure) / abs(state.traction) == pytest.approx(abs(beta), rel=1e-6)
+    assert abs((state.traction * np.exp(-1j * turn)).imag) < 1e-6 * abs(state.traction)  # shear alone
+    assert state.intensity(state.traction / 2, 4.0) == pytest.approx(state.pressure)
+
+
+@pytest.mark.parametrize("after", [False, True])
+def test_pressure_beside_a_bond_of_equal_materials_is_finite(after):
+    """The shear of mode II has no pressure on the line of the crack."""
+    assert wedge_exponents(*tip_of_bond(0.3, (0.3, 0.3), 1.0, after)) == ()
+    assert beside_bond(*tip_of_bond(0.3, (0.3, 0.3), 1.0, after)) is None
+
+
+def test_equal_wedges_that_are_bonded_are_one():
+    """Beside contact with a rigid plane on one face: the wedge of both angles, with a free face."""
+    for one, other in ((1.0, 1.3), (pi / 2, pi / 2), (0.4, 2.4)):
+        level = contact_face(-1j)
+        across = OppositeWedge(one, other, (BONDED, FREE), 0.3, 1.0)
+        found = wedge_exponents(0.0, one, (level, BONDED), 0.3, across)
+        assert found == pytest.approx(wedge_exponents(0.0, one + other, (level, FREE), 0.3), abs=1e-7)
 
 
 ROLLERS = Face(1.0, (False, True)), Face(1.0, (True, False))

@@ -1,13 +1,247 @@
-"""What holds bonded nodes together, and bodies that might spin."""
+"""Bonds that end beside contact, such as a debond or a crack on the common line of two bodies; and held spins."""
 
 import numpy as np
 import pytest
-from several_bodies import HELD, block, elastic, problem
+from several_bodies import HELD, block, elastic, problem, stated
 
+import bemcontact
 from bemcontact.analysis.solve import solve
 from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import boundary_state, condense
 from bemcontact.errors import ProblemError
+
+PRESSURE = 5.0
+ARRANGEMENTS = {"bc": (-2, 0, 2), "cbc": (-3, -1, 1, 3), "bcb": (-3, -1, 1, 3)}
+"""Bonds (b) and contacts (c) along the common line, and where they end."""
+
+
+def outline(edges):
+    """Boundary from names, starts and numbers of elements of edges."""
+    return {"outer": [{"name": name, "start": start, "elements": number} for name, start, number in edges]}
+
+
+def halves(
+    kinds, conditions, *, moduli=(1000.0, 1000.0), n=2, turn=0.0, mirror=False, scale=1.0, height=1.0, stress=1.0,
+    places=None,
+):  # fmt: skip
+    """Two blocks above each other: bonded on some parts of their common line, in contact on the others.
+
+    `conditions` are those of both bodies; `n` is the number of elements on each unit of length.
+    """
+    at = places or ARRANGEMENTS[kinds]
+    way = np.exp(1j * turn) * scale
+
+    def place(x, y):
+        z = way * complex(-x if mirror else x, y)
+        return [z.real, z.imag]
+
+    def body(corners):
+        names = [name for name, *_ in corners]
+        edges = [(name, place(x, y), number) for name, x, y, number in corners]
+        if mirror:  # the other way round: each edge starts where it ended
+            edges = [(name, edges[(names.index(name) + 1) % len(names)][1], k) for name, _, k in reversed(edges)]
+        return outline(edges)
+
+    parts = [(f"i{j}", at[j], at[j + 1], int(n * (at[j + 1] - at[j]))) for j in range(len(kinds))]
+    sides = max(2, int(n * height))
+    across = int(n * (at[-1] - at[0]))
+    up = [(name, x, 0, k) for name, x, _, k in parts]
+    up += [("right", at[-1], 0, sides), ("top", at[-1], height, across), ("left", at[0], height, sides)]
+    low = [(name, x, 0, k) for name, _, x, k in reversed(parts)]
+    low += [("left", at[0], 0, sides), ("bottom", at[0], -height, across), ("right", at[-1], -height, sides)]
+    pairs = {f"{kind}{j}": [f"up/i{j}", f"low/i{j}"] for j, kind in enumerate(kinds)}
+    return stated(
+        name="debond",
+        bodies={
+            "up": elastic(body(up), conditions[0], moduli[0] * stress),
+            "low": elastic(body(low), conditions[1], moduli[1] * stress),
+        },
+        bonded={name: pair for name, pair in pairs.items() if name[0] == "b"},
+        contacts={name: {"between": pair} for name, pair in pairs.items() if name[0] == "c"},
+        accuracy=None,
+    )  # fmt: skip
+
+
+def squeezed(stress=1.0):
+    """Pressure on both blocks, which nothing else holds."""
+    return {"top": {"pressure": PRESSURE * stress}}, {"bottom": {"pressure": PRESSURE * stress}}
+
+
+def worst_of(result, exact):
+    return float(np.abs(result.solution.pressure / exact - 1).max())
+
+
+@pytest.mark.parametrize("kinds", ARRANGEMENTS)
+@pytest.mark.parametrize(
+    "seen",
+    [{}, {"turn": 0.7}, {"turn": -2.2}, {"mirror": True}, {"scale": 1e-3, "stress": 1e6}, {"n": 1}],
+    ids=["as drawn", "turned", "turned on", "mirrored", "in other units", "on few elements"],
+)  # fmt: skip
+def test_uniform_pressure_on_a_debond_is_exact(kinds, seen):
+    """The stress of the whole block: a linear displacement, which elements of any size have."""
+    result = bemcontact.solve(halves(kinds, squeezed(seen.get("stress", 1.0)), **seen))
+    assert result.certified
+    assert result.certificate.kind.value == "unique"
+    assert worst_of(result, PRESSURE * seen.get("stress", 1.0)) < 1e-10
+    assert not any("behind" in note or "zone" in note for note in result.notes)
+
+
+@pytest.mark.parametrize("formulation", ["qp1", "qp2", "qp3", "complementarity"])
+def test_every_formulation_certifies_a_debond(formulation):
+    """Its tip is no contact point: a gap that is zero at any pressure would leave the pressure free."""
+    result = bemcontact.solve(halves("cbc", squeezed()), formulation=formulation)
+    assert result.certified
+    assert worst_of(result, PRESSURE) < 1e-9
+
+
+def test_a_fluid_around_a_kinked_interface_presses_uniformly_on_the_debond():
+    """Hydrostatic pressure strains bodies alike that have the same (1 + ν) (1 - 2 ν) / E: nothing slides or opens."""
+    fluid, elements = {"pressure": PRESSURE}, 3
+    lower = [("left", (-2, 0), 4), ("bottom", (-2, -2), 8), ("right", (2, -2), 6), ("top", (2, 1), 4)]
+    lower += [("wall", (0, 1), elements), ("floor", (0, 0), 4)]
+    upper = [("floor", (-2, 0), 4), ("wall", (0, 0), elements), ("top", (0, 1), 4), ("left", (-2, 1), elements)]
+
+    def strained(ratio):
+        return (1 + ratio) * (1 - 2 * ratio)
+
+    material = {"young_modulus": 1000.0 * strained(0.1) / strained(0.3), "poisson_ratio": 0.1}
+    for bonded, touching in (("floor", "wall"), ("wall", "floor")):
+        spec = stated(
+            name="step",
+            bodies={
+                "low": elastic(outline(lower), dict.fromkeys(("left", "bottom", "right", "top"), fluid)),
+                "up": {**elastic(outline(upper), {"top": fluid, "left": fluid}), "material": material},
+            },
+            bonded={"glue": [f"up/{bonded}", f"low/{bonded}"]},
+            contacts={"step": {"between": [f"up/{touching}", f"low/{touching}"]}},
+            accuracy=None,
+        )  # fmt: skip
+        result = bemcontact.solve(spec)
+        assert result.certified
+        assert worst_of(result, PRESSURE) < 1e-10
+
+
+def mirrored_load(top, bottom):
+    """Loads on both blocks that are mirror images in their common line."""
+    return {"top": top, "left": {"displacement": {"x": 0}}}, {"bottom": bottom, "left": {"displacement": {"x": 0}}}
+
+
+def beside_a_half(kinds, slope, n):
+    """Largest differences of pressures and gaps of two equal halves from those of one of them on a rigid plane."""
+    load = {"pressure": {"constant": PRESSURE, "x": slope}}
+    both = bemcontact.solve(halves(kinds, mirrored_load(load, load), n=n))
+    one = both.problem.bodies["up"]
+    bonded, touching = ([f"i{j}" for j, kind in enumerate(kinds) if kind == its] for its in "bc")
+    plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+    half = bemcontact.solve(
+        stated(
+            name="half", material=one.material, boundary=one.boundary, accuracy=None,
+            conditions={**mirrored_load(load, load)[0], **{name: {"displacement": {"y": 0}} for name in bonded}},
+            contact_zones={f"c{name[1:]}": {"edges": name, "surface": plane} for name in touching},
+        )
+    )  # fmt: skip
+    assert both.certified
+    assert half.certified
+    gaps = both.solution.displacement - 2 * half.solution.displacement
+    pressures = both.solution.pressure - half.solution.pressure
+    scales = half.solution.pressure.max(), half.contact.scales.displacement
+    return [float(np.abs(part).max() / scale) for part, scale in zip((pressures, gaps), scales, strict=True)]
+
+
+@pytest.mark.parametrize("kinds", ARRANGEMENTS)
+@pytest.mark.parametrize("slope", [1.0, -4.0])
+def test_equal_halves_are_one_of_them_on_a_plane(kinds, slope):
+    """A symmetric state has no displacement across the bond, and the debond closes on the plane, open in part or not.
+
+    Forces on the held edge balance up to the slack of the discrete equations, those of the bond exactly. This slack
+    falls with the elements; where contact opens beside the tip, it is much larger there than elsewhere.
+    """
+    coarse, fine = (beside_a_half(kinds, slope, n) for n in (4, 8))
+    assert max(coarse) < 5e-3
+    assert fine[0] < coarse[0] / 2
+    assert fine[1] < max(coarse[1] / 2, 1e-14)
+
+
+PLATE = 20.0
+"""Half of the width and of the height of a plate over half of the length of its crack."""
+
+
+def crack(load, n):
+    """Solve a plate with a crack between two halves, 2 n elements in it, under tractions (x, y) as on its upper side.
+
+    Beyond the tips elements grow as far as they are from them. Returns places from the middle, and gaps and slips over
+    those of a plate without ends, 4 σ/E' sqrt(a² - x²).
+    """
+    grown = [1.0]
+    while grown[-1] < PLATE:
+        grown.append(grown[-1] + min(1.0, max(1 / n, 0.5 * (grown[-1] - 1))))
+    beyond = ((np.array(grown[1:-1]) - 1) / (PLATE - 1)).tolist()
+    toward = [1 - at for at in beyond[::-1]]
+    x, y = load
+
+    def half(sign):
+        line = [("l", -1.0 * PLATE, toward), ("c", -1.0, 2 * n), ("r", 1.0, beyond)]
+        rest = [("right", PLATE, 0.0), ("far", PLATE, PLATE), ("left", -PLATE, PLATE)]
+        edges = [{"name": name, "start": [sign * at, 0], **_divided(own)} for name, at, own in line]
+        edges += [{"name": name, "start": [sign * at, sign * up], "elements": 4} for name, at, up in rest]
+        loads = {"far": (x, y), "right": (0.0, x), "left": (0.0, -x)}
+        tractions = {name: {"traction": {"x": sign * tx, "y": sign * ty}} for name, (tx, ty) in loads.items()}
+        return elastic({"outer": edges}, tractions)
+
+    spec = stated(
+        name="crack", bodies={"up": half(1), "low": half(-1)}, accuracy=None,
+        bonded={"left": ["up/l", "low/r"], "right": ["up/r", "low/l"]}, contacts={"c": {"between": ["up/c", "low/c"]}},
+    )  # fmt: skip
+    result = bemcontact.solve(spec)
+    assert result.certified
+    state, places = result.boundary, result.contact.points[:, 0]
+    on = [state.edge == state.edge_names.index(name) for name in ("up/c", "low/c")]
+    moved = [
+        dict(zip(state.points[own, :, 0].ravel(), state.displacement[own].reshape(-1, 2), strict=True)) for own in on
+    ]
+    slips = np.array([moved[0][at] - moved[1][min(moved[1], key=lambda other: abs(other - at))] for at in places])
+    exact = 4 * np.hypot(*load) / (1000.0 / (1 - 0.3**2)) * np.sqrt(1 - places**2)
+    return result, places, (result.contact.initial_gap + result.solution.displacement) / exact, slips[:, 0] / exact
+
+
+def _divided(at):
+    return {"elements": at} if isinstance(at, int) else {"elements": len(at) + 1, "ends_at": at}
+
+
+def far_from_tips(values, places):
+    """Largest difference from one where the tips are farther than an eighth of the crack."""
+    return float(np.abs(values[np.abs(places) < 0.75] - 1).max())
+
+
+def assert_of_order_one(errors):
+    """Elements of one length follow the stress s^(-1/2) before the tip with an error like their length."""
+    assert errors[-1] < 0.01
+    assert errors[1] < errors[0] / 1.7
+    assert errors[2] < errors[1] / 1.9
+
+
+def test_an_open_crack_has_the_opening_of_the_closed_form():
+    """2 u = 4 σ/E' sqrt(a² - x²) in a plate without ends (Westergaard); with ends K is larger by sqrt(sec(π a/2W))."""
+    errors = []
+    for n in (4, 8, 16):
+        result, places, opening, _ = crack((0.0, 1.0), n)
+        assert not result.solution.pressure.any()
+        errors.append(far_from_tips(opening / np.sqrt(1 / np.cos(np.pi / 2 / PLATE)), places))
+    assert_of_order_one(errors)
+
+
+def test_a_closed_crack_slides_as_an_open_one_opens():
+    """Frictionless, under pressure σ and shear τ: pressure σ, as without a crack, and slip 4 τ/E' sqrt(a² - x²).
+
+    Ends of the plate change the slip by a part of (a/W)² = 0.25 %.
+    """
+    errors = []
+    for n in (4, 8, 16):
+        result, places, _, slip = crack((1.0, -1.0), n)
+        assert worst_of(result, 1.0) < 1e-10
+        errors.append(far_from_tips(slip * 2**0.5, places))
+    assert_of_order_one(errors)
+
 
 MIDDLE = np.array([0.3, 2.0])
 

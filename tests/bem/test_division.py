@@ -83,3 +83,16 @@ def test_elements_that_are_round_off_of_the_edge_that_follows_them_are_refused()
     bodies = {"peg": elastic(peg), "low": elastic(block((-40, 30), (-20, 0)), HELD)}
     with pytest.raises(ProblemError, match="elements of 'peg/foot' are too short beside the length of 'low/top'"):
         divided(first_mesh(problem(bodies, accuracy=0.01, c=["peg/foot", "low/top"])))
+
+
+def test_far_sides_of_two_rims_on_one_part_of_an_edge_are_refused():
+    """Two named rims beside each other: pairs 50 degrees aside are half a radius away, and those of both overlap."""
+    rims = {
+        name: elastic({"outer": [{**circle("rim", 1.0), "center": [x, 1.0]}]}, modulus=1e5)
+        for name, x in (("one", -1.2), ("two", 1.2))
+    }
+    bodies = {**rims, "low": elastic(block((-6, 6), (-3, 0)), HELD)}
+    named = problem(bodies, accuracy=0.01, a=["one/rim", "low/top"], b=["two/rim", "low/top"])
+    with pytest.raises(ProblemError, match="name whole bodies in 'between'"):
+        divided(first_mesh(named))
+    divided(first_mesh(problem(bodies, accuracy=0.01, a=["one", "low"], b=["two", "low"])))

@@ -152,6 +152,28 @@ HALF = [
 ]  # fmt: skip
 
 
+def test_mirrored_edges_have_conditions_and_contact():
+    """Of one body, as of several: half of an outline, and a foot and a pressure on the other half of it."""
+    spec = {
+        "name": "mirrored",
+        "material": {"young_modulus": 1000, "poisson_ratio": 0.3},
+        "boundary": {
+            "outer": [line("foot", [0, 0], [2, 0]), line("side", end=[2, 1]), line("top", end=[0, 1])],
+            "mirror": {"x": 0},
+        },
+        "conditions": {"top mirrored": {"pressure": 1.0}, "top": {"pressure": 1.0}},
+        "contact_zones": {
+            "floor": {
+                "edges": ["foot", "foot mirrored"], "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+            }
+        },
+    }  # fmt: skip
+    assert bemcontact.problem(spec).edges_of("floor") == ("foot", "foot mirrored")
+    spec["conditions"]["roof mirrored"] = {"pressure": 1.0}
+    with pytest.raises(ProblemError, match="unknown edge 'roof mirrored'"):
+        bemcontact.problem(spec)
+
+
 @pytest.mark.parametrize("axis", ["x", "y"])
 def test_a_mirrored_half_is_the_whole(axis):
     """Each point of the image is the mirror image of one of the half, and the area is twice as large."""
