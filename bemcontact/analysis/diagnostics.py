@@ -229,7 +229,7 @@ def longer(problem: Problem, zone: str) -> str:
     return (
         f"reduce the load, or name edges in between, such as {named}: whole bodies may touch where gaps as drawn are "
         f"up to {problem.reach_of(zone):.3g} {problem.units.length}".rstrip()
-        + " larger than at the nearest place, "
+        + " larger than at the nearest place, or than zero, "
         f"{100 * REACH:.2g} % of the size of the smaller one"
     )
 

@@ -54,6 +54,8 @@ class OppositePart(NamedTuple):
 def opposite_parts(edges: Sequence[Edge], surface: BodySurface, reach: float = np.inf) -> list[OppositePart]:
     """Parts of edges opposite to a surface, in order, no farther from it than the nearest place and a reach [L].
 
+    If bodies are drawn into each other, no farther than this reach: a body may be squeezed in one place only.
+
     A place is opposite to the surface if it is turned to it and forms a pair with a place there. That of a rigid
     surface may be a corner both sides of which the place is turned to.
     """
@@ -89,7 +91,7 @@ def _largest_gap(edges: Sequence[Edge], surface: BodySurface, reach: float) -> f
     if not np.isfinite(reach):
         return np.inf
     gaps = (surface.feet(edge.points(_samples(edge, surface))).gap for edge in edges)
-    return min((float(gap.min()) for gap in gaps), default=0.0) + reach
+    return max(min((float(gap.min()) for gap in gaps), default=0.0), 0.0) + reach
 
 
 def _samples(edge: Edge, surface: BodySurface) -> Array:

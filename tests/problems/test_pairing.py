@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from several_bodies import block, circle, elastic, polygon, problem, rigid
+from several_bodies import HELD, block, circle, elastic, polygon, problem, rigid
 
 from bemcontact.problems.body_surface import BodySurface
 
@@ -180,17 +180,29 @@ def test_pairs_do_not_jump_where_a_part_ends(pair):
         assert np.abs(np.diff(found.points, axis=0)).max() < 1e-5
 
 
-@pytest.mark.parametrize(("radius", "share"), [(2.0, 1.0), (3.0, 0.25), (3.0 * (1 + 1e-15), 0.25), (4.0, 0.0)])
-def test_the_smaller_of_two_disks_that_may_spin_has_its_own_normals(radius, share):
-    """Of equal ones, whatever the rounding of their radii, both count by their moduli, which are one to three."""
-    rims = [
-        {"name": "rim", "kind": "arc", "center": [0, y], "radius": r, "angles": [0, 360]}
-        for y, r in ((radius, radius), (-3.0, 3.0))
-    ]
-    bodies = {"up": elastic({"outer": rims[:1]}), "low": elastic({"outer": rims[1:]}, modulus=3000.0)}
+@pytest.mark.parametrize(("modulus", "share"), [(1e3, 0.5), (3e3, 0.25), (1e7, 0.05), (1.0, 0.95)])
+def test_disks_that_may_spin_share_their_normals_by_their_moduli(modulus, share):
+    """Of either of them at least a twentieth counts, which holds it beside the other one."""
+    rims = [{**circle("rim", 2.0), "center": [0, 2]}, {**circle("rim", 3.0), "center": [0, -3]}]
+    bodies = {"up": elastic({"outer": rims[:1]}), "low": elastic({"outer": rims[1:]}, modulus=modulus)}
     there, back = (
         problem(bodies, 0.01, c=pair).zones["c"].surface for pair in (["up/rim", "low/rim"], ["low/rim", "up/rim"])
     )
     assert isinstance(there, BodySurface)
     assert isinstance(back, BodySurface)
     assert (there.share, back.share) == pytest.approx((share, 1 - share))
+
+
+@pytest.mark.parametrize("squeezed", [0.0, 0.05, 0.4])
+def test_a_ring_that_is_squeezed_on_the_floor_of_a_groove_may_touch_its_walls(squeezed):
+    """The floor is drawn inside the ring; the walls touch it as drawn, however deep that is."""
+    groove = polygon(
+        bottom=(-6, -6), right=(6, -6), shoulder=(6, 1), wall=(2, 1), floor=(2, squeezed - 2),
+        other_wall=(-2, squeezed - 2), other=(-2, 1), left=(-6, 1),
+    )  # fmt: skip
+    bodies = {"ring": elastic({"outer": [circle("rim", 2.0)]}, modulus=10.0), "groove": elastic(groove, HELD, 1e4)}
+    stated = problem(bodies, accuracy=0.01, c=["ring", "groove"])
+    surface = stated.zones["c"].surface
+    assert isinstance(surface, BodySurface)
+    touched = {surface.edges[part.onto].name for part in stated.opposite("c")}
+    assert touched == {"groove/floor", "groove/wall", "groove/other_wall"}
