@@ -4,7 +4,7 @@ In A Q = P⁻¹ L U the columns of the displacements at contact points come last
 block of U and of L⁻¹P B. The whole solution follows for one combination of loads and pressures at a time.
 
 Iterative refinement is made of each load, and of one combination of unit pressures. Only where this one changes by more
-than round-off are all pressures refined.
+than round-off are all pressures refined, and the condition of A is looked at: the change is about round-off times it.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,7 +15,10 @@ import numpy as np
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.contact.lu import LU
+from bemcontact.errors import SingularSystemError
 
+SINGULAR = 1e-15
+"""Reciprocal condition number below which the system counts as singular."""
 PROBED = 1e-11
 """Relative change of the combination by refinement from which all pressures are refined."""
 GOLDEN = 0.6180339887498949
@@ -43,7 +46,7 @@ class Response:
     def of(
         cls, lu: LU, order: IntArray, count: int, right: Array, loads: int, residual: Callable[[Array, Array], Array]
     ) -> Self:
-        """Solve, and refine where it matters.
+        """Solve, and refine where it matters; `SingularSystemError` if the equations have no unique solution.
 
         Parameters
         ----------
@@ -63,7 +66,14 @@ class Response:
         step = correction(probes, solution)
         reduced[:, :loads] += step[:, :loads]
         change = np.abs(lu.backward(step[:, loads], count)).max(initial=0.0)
-        if change > PROBED * np.abs(solution[len(order) - count :, loads]).max(initial=0.0):
+        largest = np.abs(solution[len(order) - count :, loads]).max(initial=0.0)
+        if not 0.0 < largest < np.inf or not change <= PROBED * largest:
+            if lu.reciprocal_condition < SINGULAR:
+                raise SingularSystemError(
+                    "the equations of the body have no unique solution (reciprocal condition number "
+                    f"{lu.reciprocal_condition:.1e}); look for coincident edges, or for neighboring elements of very "
+                    "different length"
+                )
             reduced += correction(np.eye(right.shape[1]), lu.backward(reduced))
         return cls(lu=lu, order=order, reduced=reduced, last=lu.backward(reduced, count))
 

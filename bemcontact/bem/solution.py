@@ -9,14 +9,11 @@ from bemcontact.bem.influence import InfluenceRows
 from bemcontact.bem.response import Response
 from bemcontact.bem.system import System
 from bemcontact.contact.lu import LU
-from bemcontact.errors import SingularSystemError
 
 LARGEST_COPY = 2.5e8
 """Largest matrix in bytes that is kept beside its factors; of larger ones rows are computed anew for the refinement."""
 POINTS_OF_RESIDUAL = 512
 """Points whose rows machine code computes at a time for the refinement."""
-SINGULAR = 1e-15
-"""Reciprocal condition number below which the system counts as singular."""
 
 
 def assemble(system: System) -> tuple[Array, Array]:
@@ -53,12 +50,6 @@ def solve_system(system: System) -> Response:
     keep = matrix.nbytes <= LARGEST_COPY
     order, count = system.contact_last() if keep else (np.arange(system.size), system.size)
     lu = LU.of(matrix.T[order].T if keep else matrix, overwrite=True)
-    if lu.reciprocal_condition < SINGULAR:
-        raise SingularSystemError(
-            "the equations of the body have no unique solution (reciprocal condition number "
-            f"{lu.reciprocal_condition:.1e}); look for coincident edges, or for neighboring elements of very different "
-            "length"
-        )
     left = (lambda x, weights: right @ weights - matrix @ x) if keep else partial(residual, system)
     return Response.of(lu, order, count, right, len(system.loadings), left)
 

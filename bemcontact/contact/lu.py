@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Self
 
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
@@ -18,21 +19,29 @@ class LU:
     ----------
     factors : (m, m) L and U in one array
     pivots : (m,) row exchanges
-    reciprocal_condition : estimate in the 1-norm; zero if a pivot is zero
+    norm : of A, the 1-norm
+    singular : whether a pivot is zero
     """
 
     factors: Array
     pivots: IntArray
-    reciprocal_condition: float
+    norm: float
+    singular: bool
 
     @classmethod
     def of(cls, matrix: Array, *, overwrite: bool = False) -> Self:
         """Factorize a matrix (m, m); `overwrite` reuses the memory of one in Fortran order."""
-        lange, getrf, gecon = get_lapack_funcs(("lange", "getrf", "gecon"), dtype=float)
+        lange, getrf = get_lapack_funcs(("lange", "getrf"), dtype=float)
         norm = lange("1", matrix)
         with one_thread.lifted(len(matrix) ** 3 / 3):
             factors, pivots, singular = getrf(matrix, overwrite_a=overwrite)
-        return cls(factors=factors, pivots=pivots, reciprocal_condition=0.0 if singular else gecon(factors, norm)[0])
+        return cls(factors=factors, pivots=pivots, norm=norm, singular=bool(singular))
+
+    @cached_property
+    def reciprocal_condition(self) -> float:
+        """Estimate in the 1-norm; zero if a pivot is zero."""
+        (gecon,) = get_lapack_funcs(("gecon",), dtype=float)
+        return 0.0 if self.singular else float(gecon(self.factors, self.norm)[0])
 
     def solve(self, right: Array, residual: Callable[[Array], Array]) -> Array:
         """Solve for right sides (m,) or (m, s), and refine once.
