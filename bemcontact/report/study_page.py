@@ -81,7 +81,14 @@ def values_in_words(row: MemberRow) -> str:
 
 def value_in_words(value: Any) -> str:
     """A value on an axis."""
-    return f"{value:.10g}" if isinstance(value, float) else str(value)
+    match value:
+        case float():
+            return f"{value:.10g}"
+        case list():
+            return f"[{', '.join(map(value_in_words, value))}]"
+        case dict():
+            return f"{{{', '.join(f'{key}: {value_in_words(item)}' for key, item in value.items())}}}"
+    return str(value)
 
 
 def unit_of_output(column: str, units: Units) -> str:
@@ -106,7 +113,9 @@ def render(study: StudyTable, pictures: Mapping[str, bytes], spec: str | None) -
         verdicts=verdicts,
         overall=_overall(study),
         counts=[(status, count, QUALITY[MemberStatus(status)]) for status, count in study.counts.items()],
-        axes=[(axis.name, *_extent(axis.values)) for axis in study.axes],
+        axes=[
+            (axis.name, axis.keys if axis.keys != (axis.name,) else (), *_extent(axis.values)) for axis in study.axes
+        ],
         columns=[(name, unit_of_output(name, study.units)) for name in study.columns],
         rows=[*_cells(study, MOST_ROWS)],
         most=MOST_ROWS,

@@ -28,7 +28,7 @@ class MemberRow(Leaf):
     number: int
     """Number of the member, from 0 on; the first axis changes slowest."""
     values: dict[str, Any]
-    """Value on each axis, by its keys."""
+    """Value on each axis, by its name."""
     status: MemberStatus
     """How the member ended: holds, mesh not assessed (no accuracy is asked), mesh not met, not certified, or failed."""
     equations: str
