@@ -52,8 +52,8 @@ def existing_path(data: Any, path: KeyPath) -> KeyPath:
     """Follow a path through the data of a problem, and replace names of list entries by their positions.
 
     A key of the only entry of a list leads to it, for a list of one may be written as its entry; then [0] leads to the
-    entry. Keys that are not stated are kept, for they may have defaults. `ProblemError` if the path leads into a value without
-    entries, or to an entry that a list or one of the `NAMED` mappings does not have.
+    entry. Keys that are not stated are kept, for they may have defaults. `ProblemError` if the path leads into a value
+    without entries, or to an entry that a list or one of the `NAMED` mappings does not have.
     """
     whole: Any = data
     followed: KeyPath = ()
