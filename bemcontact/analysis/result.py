@@ -43,6 +43,9 @@ from bemcontact.views import Tabular
 ROUND_OFF = 1e-9
 """Relative error that is not worth a word."""
 
+BEYOND = "do not include"
+"""What a note says of error bars that leave out its subject."""
+
 
 class BoundaryRecord(Record):
     """State of the whole boundary, element by element; values at the three nodes of each. JSON names the edges."""

@@ -7,6 +7,7 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from bemcontact.analysis.result import BEYOND
 from bemcontact.errors import escaped_lines
 from bemcontact.problems.units import Units
 from bemcontact.report.bars import NOTHING, error_percent, with_error
@@ -177,6 +178,9 @@ def study_summary(study: StudyTable, seconds: float, place: str | None = None) -
             add(shown, "Note", _sentence(row))
     if len(short) > MOST_NAMED:
         add(shown, "Note", f"{len(short) - MOST_NAMED} further members do not hold; the table has the reason of each")
+    if beyond := [row for row in study.rows if row.holds is not False and BEYOND in row.message]:
+        count = f"{len(beyond)} {plural('member', len(beyond))}"
+        add(shown, "Note", f"error bars of {count} leave something out. {_sentence(beyond[0])}")
     if place is not None:
         add(shown, "Written", place)
     for verdict in verdicts:
