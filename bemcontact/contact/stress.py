@@ -34,6 +34,8 @@ class Labels:
     stress: str = ""
 
 
+ROUND_OFF = 1e-12
+"""Part of the largest stress that is printed as zero."""
 PRINTED = 6
 """Most points of which stresses are printed."""
 
@@ -73,7 +75,9 @@ class Stress(WithHints):
         head = f"<Stress at {_counted(len(self), 'point')}{largest}{f', {none} of them singular' if none else ''}>"
         length, stress = (f" [{label}]" if label else "" for label in (self.labels.length, self.labels.stress))
         names = (f"x{length}", f"y{length}", f"xx{stress}", "yy", "xy", "zz", "von Mises", "max shear", "kind")
-        numbers = np.column_stack([self.points, self.components, self.zz, self.von_mises, self.max_shear])
+        values = np.column_stack([self.components, self.zz, self.von_mises, self.max_shear])
+        values[abs(values) <= ROUND_OFF * np.nanmax(abs(values), initial=0.0)] = 0.0
+        numbers = np.column_stack([self.points, values])
         rows = [[*(f"{value:.5g}" for value in row), kind] for row, kind in zip(numbers, self.kind, strict=True)]
         more = [_counted(len(rows) - PRINTED, "more point")] if len(rows) > PRINTED else []
         return "\n".join([head, *(_aligned([names, *rows[:PRINTED]]) if rows else []), *more])

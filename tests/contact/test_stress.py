@@ -35,6 +35,14 @@ def test_stress_prints_a_row_for_each_of_the_first_points():
     assert (len(rows), rows[-1]) == (PRINTED + 1, "2 more points")
 
 
+def test_what_is_round_off_beside_the_largest_stress_is_zero_in_print():
+    nearly = np.array([[3.0, 2e-12, -2e-13], [1e-3, np.nan, 0.0]])
+    some = Stress(points=np.zeros((2, 2)), components=nearly, zz=np.zeros(2), kind=np.array(["inside", "singular"]))
+    _, _, first, second = repr(some).splitlines()
+    assert first.split()[2:5] == ["3", "0", "0"]
+    assert second.split()[2:5] == ["0.001", "nan", "0"]
+
+
 def test_stress_without_points_or_units_is_printed_too():
     assert repr(stress(0)) == "<Stress at 0 points>"
     assert repr(stress(1, labels=Labels())).splitlines()[1].split()[:3] == ["x", "y", "xx"]
