@@ -277,8 +277,8 @@ def _changed(
         else "with the gaps after this motion, contact does not hold the body"
     )
     words = (
-        f"both sides of '{zone}' move by {_vector(motion, gaps.problem.units.length)} against each "
-        f"other, which is not small beside their shapes: {effect}; {_remedy(gaps, motion)}"
+        f"{_motion_against(gaps, zone, motion)}, which is not small beside their shapes: {effect}; "
+        f"{_remedy(gaps, motion)}"
     )
     if solved and abs(change) < WITHHELD:
         return None, (f"{words}; error bars do not include this",)
@@ -358,10 +358,9 @@ def _forces_changed(
         else f"{100 * part * size[number, axis] / whole:.2g} % of all force there"
     )
     words = (
-        f"both sides of '{zone}' move by {_vector(motion, units.length)} against each other, which is "
-        "not small beside their shapes: with the gaps and the directions of the surfaces where the body then is, the "
-        f"force between them changes by {gained}, along {'xy'[axis]} by {of}; "
-        f"{_remedy(gaps, motion)}"
+        f"{_motion_against(gaps, zone, motion)}, which is not small beside their shapes: with the gaps and the "
+        "directions of the surfaces where the body then is, the force between them changes by "
+        f"{gained}, along {'xy'[axis]} by {of}; {_remedy(gaps, motion)}"
     )
     if part < WITHHELD:
         return None, (f"{words}; error bars do not include this",)
@@ -456,6 +455,14 @@ def _motion_in(moved: Displaced, within: BoolArray, pressure: Array) -> Array:
     """Motion (2,) [L] of that of some points (n,) whose pressure times motion is largest."""
     weight = np.where(within, pressure, -1.0) * np.hypot(*moved.motion.T)
     return moved.motion[int(np.argmax(weight))]
+
+
+def _motion_against(gaps: SurfaceGaps, zone: str, motion: Array) -> str:
+    """Say by how much two bodies, or a body and a rigid surface, move against each other."""
+    by = _vector(motion, gaps.problem.units.length)
+    if isinstance(gaps.surfaces[zone], BodySurface):
+        return f"both sides of '{zone}' move by {by} against each other"
+    return f"the body moves by {by} against the surface of '{zone}'"
 
 
 def _remedy(gaps: SurfaceGaps, motion: Array) -> str:

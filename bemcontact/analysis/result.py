@@ -1,6 +1,6 @@
 """The result of a contact problem: its solution and all quantities recomputed from it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -31,7 +31,7 @@ from bemcontact.contact.record import (
     units_record,
 )
 from bemcontact.contact.solution import ContactSolution, Status
-from bemcontact.contact.stress import EdgeStress, LargestStresses, Stress, TriangulatedBody
+from bemcontact.contact.stress import EdgeStress, Labels, LargestStresses, Stress, TriangulatedBody
 from bemcontact.errors import ProblemError
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problems.problem import Problem
@@ -42,6 +42,9 @@ from bemcontact.views import Tabular
 
 ROUND_OFF = 1e-9
 """Relative error that is not worth a word."""
+
+BEYOND = "do not include"
+"""What a note says of error bars that leave out its subject."""
 
 
 class BoundaryRecord(Record):
@@ -168,6 +171,11 @@ class Result(Recorded, Tabular):
         return Units(**self.contact.units)
 
     @property
+    def _labels(self) -> Labels:
+        """Labels of units of stresses."""
+        return Labels(length=self.units.length, stress=self.units.stress)
+
+    @property
     def points(self) -> Array:
         """Undeformed places (n, 2) of the contact points [L]."""
         return self.contact.points
@@ -261,7 +269,7 @@ class Result(Recorded, Tabular):
         ProblemError
             A point is outside the body, or the result is that of a condensed problem, which has no body.
         """
-        return self._stresses.stress(points, body)
+        return replace(self._stresses.stress(points, body), labels=self._labels)
 
     @one_thread
     def displacement(self, points: ArrayLike, body: str | None = None) -> Array:
@@ -288,7 +296,7 @@ class Result(Recorded, Tabular):
         ProblemError
             The result is that of a condensed problem, which has no boundary.
         """
-        return {edge: self._stresses.along(edge) for edge in self._stresses.edges}
+        return {edge: replace(self._stresses.along(edge), labels=self._labels) for edge in self._stresses.edges}
 
     @one_thread
     def largest_stresses(self) -> LargestStresses:
@@ -310,7 +318,7 @@ class Result(Recorded, Tabular):
 
         stresses = self._stresses
         assert self.problem is not None
-        return largest_with_bars(self.problem, stresses, self.accuracy)
+        return replace(largest_with_bars(self.problem, stresses, self.accuracy), labels=self._labels)
 
     @cached_property
     def triangulated(self) -> TriangulatedBody:

@@ -1,6 +1,7 @@
 """Where the bodies touch: intervals of contact, the peak pressure, the resultant."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, fields
 from typing import ClassVar
 
 import numpy as np
@@ -17,7 +18,7 @@ from bemcontact.serialization import Internal, Leaf, Pair, Record
 OPEN_NODES = 3
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ContactInterval(Leaf):
     """One unbroken stretch of contact along the boundary."""
 
@@ -41,6 +42,11 @@ class ContactInterval(Leaf):
     """Number of the unbroken piece of boundary."""
     perimeter: Internal[float] = float("inf")
     """Perimeter of that piece if it closes on itself, otherwise infinity [L]."""
+
+    def __repr__(self) -> str:
+        """All fields; the perimeter only of a boundary that closes on itself."""
+        shown = (item.name for item in fields(self) if item.name != "perimeter" or math.isfinite(self.perimeter))
+        return f"{type(self).__name__}({', '.join(f'{name}={getattr(self, name)!r}' for name in shown)})"
 
     @computed_field
     @property

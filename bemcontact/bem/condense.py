@@ -249,10 +249,14 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
     return Condensation(body=body, parts=parts, contact=contact, gauge=gauge, bond=bond).acting()
 
 
-def observed(body: Body, parts: Sequence[CondensedPart]) -> tuple[Array, Array]:
-    """What bodies do to all gaps and bonds: by unit pressures (n + b, n + b) [L/p], by each loading (n + b, s) [L]."""
+def observed(body: Body, parts: Sequence[CondensedPart], loadings: int | None = None) -> tuple[Array, Array]:
+    """What bodies do to all gaps and bonds: by unit pressures (n + b, n + b) [L/p], by each loading (n + b, s) [L].
+
+    The number s of their `loadings` is that of the body unless it is given.
+    """
     count = len(body.points) + len(body.bonds)
-    compliance, free_displacement = np.zeros((count, count)), np.zeros((count, len(body.loadings)))
+    compliance = np.zeros((count, count))
+    free_displacement = np.zeros((count, len(body.loadings) if loadings is None else loadings))
     for part in parts:
         _observe(part, compliance, free_displacement)
     return compliance, free_displacement

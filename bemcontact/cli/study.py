@@ -22,7 +22,8 @@ def study(
         typer.Option(
             metavar="KEY=VALUES",
             help="Values of a key as of --set: a:b:n for n values from a to b, or v1,v2,v3. Also variant=NAMES and "
-            "case=NAMES. KEY1,KEY2=VALUES gives several keys the same values. Several --vary make a grid.",
+            "case=NAMES. KEY1,KEY2=VALUES gives several keys the same values, and NAME: before the keys names their "
+            "column. Several --vary make a grid.",
             show_default=False,
         ),
     ],

@@ -1,5 +1,6 @@
 """Stress at points of a body, along its edges and all over it, what is derived from its components, and its peaks."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -25,6 +26,20 @@ class PointKind(StrEnum):
     """At a corner, an end of contact or a change of conditions where stress is infinite: not a number."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Labels:
+    """Labels of the units of stresses and their places, for what is printed; empty if they are not known."""
+
+    length: str = ""
+    stress: str = ""
+
+
+ROUND_OFF = 1e-12
+"""Part of the largest stress that is printed as zero."""
+PRINTED = 6
+"""Most points of which stresses are printed."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Stress(WithHints):
     """Stress at k points of a body; tension is positive."""
@@ -45,17 +60,27 @@ class Stress(WithHints):
     """σzz (k,) [p]: ν (σxx + σyy) - E α ΔT in plane strain, zero in plane stress."""
     kind: NDArray[np.str_]
     """A `PointKind` for each point: "inside", "boundary", "corner", or "singular", where stress is not a number."""
+    labels: Labels = Labels()
+    """Labels of units."""
 
     def __len__(self) -> int:
         """Return the number of points."""
         return len(self.points)
 
     def __repr__(self) -> str:
-        """One line: number of points, the largest stress, and what is singular."""
+        """Number of points, the largest stress, and what is singular; then a table of the first points."""
         none = int((self.kind == PointKind.SINGULAR).sum())
         finite = self.von_mises[np.isfinite(self.von_mises)]
-        largest = f", von Mises stress up to {finite.max():.6g}" if finite.size else ""
-        return f"<Stress at {len(self)} points{largest}{f', {none} of them singular' if none else ''}>"
+        largest = f", von Mises stress up to {_valued(finite.max(), self.labels.stress)}" if finite.size else ""
+        head = f"<Stress at {_counted(len(self), 'point')}{largest}{f', {none} of them singular' if none else ''}>"
+        length, stress = (f" [{label}]" if label else "" for label in (self.labels.length, self.labels.stress))
+        names = (f"x{length}", f"y{length}", f"xx{stress}", "yy", "xy", "zz", "von Mises", "max shear", "kind")
+        values = np.column_stack([self.components, self.zz, self.von_mises, self.max_shear])
+        values[abs(values) <= ROUND_OFF * np.nanmax(abs(values), initial=0.0)] = 0.0
+        numbers = np.column_stack([self.points, values])
+        rows = [[*(f"{value:.5g}" for value in row), kind] for row, kind in zip(numbers, self.kind, strict=True)]
+        more = [_counted(len(rows) - PRINTED, "more point")] if len(rows) > PRINTED else []
+        return "\n".join([head, *(_aligned([names, *rows[:PRINTED]]) if rows else []), *more])
 
     @cached_property
     def principal(self) -> Array:
@@ -127,12 +152,16 @@ class EdgeStress(WithHints):
     """Arc length [L] from the start of the edge to it."""
     singular: Array
     """Ends of elements (s, 2) [L] where stress is infinite. The peak is away from their elements."""
+    labels: Labels = Labels()
+    """Labels of units."""
 
     def __repr__(self) -> str:
         """One line: edge, elements, peak."""
-        peak = "no largest hoop stress" if self.peak is None else f"hoop stress {self.peak:.6g} at {self.peak_at}"
-        infinite = f", infinite at {len(self.singular)} places" if len(self.singular) else ""
-        return f"<EdgeStress of {self.edge!r}: {len(self.arc)} elements, {peak}{infinite}>"
+        peak = "no largest hoop stress"
+        if self.peak is not None and self.peak_at is not None:
+            peak = f"hoop stress {_valued(self.peak, self.labels.stress)} at {_place(self.peak_at, self.labels.length)}"
+        infinite = f", infinite at {_counted(len(self.singular), 'place')}" if len(self.singular) else ""
+        return f"<EdgeStress of {self.edge!r}: {_counted(len(self.arc), 'element')}, {peak}{infinite}>"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -167,7 +196,7 @@ SHEAR_BELOW, INSIDE, ON_BOUNDARY = "shear below {}", "von Mises, inside", "von M
 """What the largest stresses are of; the first with the name of a zone."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class LargestStresses(WithHints):
     """The largest stresses of a body."""
 
@@ -183,6 +212,47 @@ class LargestStresses(WithHints):
     """Why there is no largest stress, by the words of its row: shear below each zone, inside and on the boundary."""
     singular: Array
     """Places (s, 2) [L] where stress is infinite: the body has no largest stress if there are any."""
+    labels: Labels = Labels()
+    """Labels of units."""
+
+    def __repr__(self) -> str:
+        """A line for each stress, with its error and place, or why there is none."""
+        below = {SHEAR_BELOW.format(zone): peak for zone, peak in self.shear.items()}
+        lines = [
+            f"{what}: {self._in_words(peak) if peak else self.missing.get(what, 'none')}"
+            for what, peak in {**below, INSIDE: self.inside, ON_BOUNDARY: self.boundary}.items()
+        ]
+        infinite = f", infinite at {_counted(len(self.singular), 'place')}" if len(self.singular) else ""
+        return "\n".join([f"<LargestStresses below {_counted(len(self.shear), 'zone')}{infinite}>", *lines])
+
+    def _in_words(self, peak: StressPeak) -> str:
+        """A stress with its error, its place and its depth."""
+        length, stress = self.labels.length, self.labels.stress
+        bar = "" if peak.bar is None else f" ± {_valued(peak.bar * peak.value, '', 2)}"
+        depth = f", {_valued(peak.depth, length)} deep" if peak.depth else ""
+        where = (f", edge {peak.edge}" if peak.edge else "") + (f", body {peak.body}" if peak.body else "")
+        return f"{_valued(peak.value)}{bar} {stress}".rstrip() + f" at {_place(peak.point, length)}{depth}{where}"
+
+
+def _valued(value: float, label: str = "", digits: int = 5) -> str:
+    """A number with its unit, if this is known."""
+    return f"{value:.{digits}g} {label}".rstrip()
+
+
+def _counted(count: int, noun: str) -> str:
+    """A number of things."""
+    return f"{count} {noun}{'s' * (count != 1)}"
+
+
+def _place(point: tuple[float, float], label: str) -> str:
+    """A place with its unit, if this is known."""
+    return f"({point[0]:.5g}, {point[1]:.5g}) {label}".rstrip()
+
+
+def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Lines of a table with columns that end together."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

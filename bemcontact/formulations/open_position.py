@@ -5,6 +5,7 @@ no gap beyond touching. Chosen is the one with the least normal displacement R a
 squares of the weights: that depends on no unit, no basis of the motions, and no path of a solver.
 """
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -48,14 +49,18 @@ def with_chosen_position(
         return solution
     p, u_n, a = unscaled(contact, p, a)
     named = tuple(name for name, way in zip(contact.motion_names, ways, strict=True) if way)
-    note = (
-        f"not determined: the {' and the '.join(named)}; the position that is given has the least normal displacement "
-        "of the contact points; state a load or a displacement that holds it, if it matters"
-    )
     return replace(
         solution, pressure=p, displacement=u_n, rigid_amplitudes=a, undetermined=named,
-        notes=tuple(dict.fromkeys((*solution.notes, note))),
+        notes=tuple(dict.fromkeys((*solution.notes, note_of_open(named)))),
     )  # fmt: skip
+
+
+def note_of_open(motions: Iterable[str]) -> str:
+    """Note that some motions are not determined, and what was chosen."""
+    return (
+        f"not determined: the {' and the '.join(motions)}; the position that is given has the least normal "
+        "displacement of the contact points; state a load or a displacement that holds it, if it matters"
+    )
 
 
 def _unseen(scaled: ScaledContact, held: BoolArray) -> Array:

@@ -178,8 +178,7 @@ class ParameterPath(Leaf, Tabular):
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes on the path and its states, one sentence each."""
-        begin, end = self.reaches
-        return (*self.path.notes_between(f"{begin:.6g}", f"{end:.6g}"), *self.said)
+        return (*self.path.notes_at(self.value), *self.said)
 
     @property
     def coarse(self) -> tuple[PathState, ...]:

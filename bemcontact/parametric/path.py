@@ -17,11 +17,11 @@ from bemcontact.contact.load_cases import Change, LoadCases, Pinned
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
-from bemcontact.formulations.open_position import with_chosen_position
+from bemcontact.formulations.open_position import note_of_open, with_chosen_position
 from bemcontact.formulations.scaling import scale, scaled_change, scaled_point, unscaled
 from bemcontact.options import FormulationName
 from bemcontact.parametric.pivoting import LinearChange, Trail, trail_along
-from bemcontact.serialization import Internal, Leaf, Matrix, PairTables, Vector
+from bemcontact.serialization import Internal, Leaf, Matrix, Pair, PairTables, Vector
 
 COMMON = {
     "compliance": "compliance",
@@ -67,8 +67,8 @@ class LoadPath(Leaf):
     """Why the path does not reach from 0 to 1, or empty."""
     open: Internal[BoolArray]
     """Whether contact leaves a position open (b - 1,) between two breakpoints; it is then chosen by a rule."""
-    left_open: Internal[tuple[str, ...]] = ()
-    """Notes on these positions."""
+    left_open: Internal[tuple[tuple[str, tuple[Pair, ...]], ...]] = ()
+    """Motions that contact leaves open, each with the ranges of t in which it does."""
 
     def __post_init__(self) -> None:
         """Make arrays read-only."""
@@ -116,13 +116,18 @@ class LoadPath(Leaf):
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes on the path, one sentence each."""
-        return self.notes_between(f"{self.begins_at:.6g}", f"{self.ends_at:.6g}")
+        return self.notes_at(float)
 
-    def notes_between(self, begin: str, end: str) -> tuple[str, ...]:
-        """Notes on a path from `begin` to `end`, one sentence each."""
-        where = f"from {begin} on" if self.begins_at > 0.0 else f"up to {end}"
+    def notes_at(self, value: Callable[[float], float]) -> tuple[str, ...]:
+        """Notes on the path, one sentence each, with the value of the parameter at each t."""
+        where = f"from {value(self.begins_at):.6g} on" if self.begins_at > 0.0 else f"up to {value(self.ends_at):.6g}"
         early = f"the path exists {where}; beyond that, {self.note}" if self.note else ""
-        return (*(text for text in (early, "" if self.unique else NOT_PROVED) if text), *self.left_open)
+        motions = [
+            " ".join([name, " and ".join(f"from {value(a):.6g} to {value(b):.6g}" for a, b in ranges)])
+            for name, ranges in self.left_open
+        ]
+        notes = (early, "" if self.unique else NOT_PROVED, note_of_open(motions) if motions else "")
+        return tuple(filter(None, notes))
 
     @computed_field
     @cached_property
@@ -389,16 +394,19 @@ def _with_positions(path: LoadPath) -> LoadPath:
 
     At a breakpoint the points that are pressed beside it stay closed, so that the states between are linear.
     """
-    leaves_open, notes = np.zeros(len(path.open), bool), list[str]()
+    leaves_open, ranges = np.zeros(len(path.open), bool), dict[str, list[Pair]]()
     for i, (begin, end) in enumerate(pairwise(path.parameter.tolist())):
         if begin < end:
             middle = path.at((begin + end) / 2)
             chosen = with_chosen_position(path.contact((begin + end) / 2), middle)
             leaves_open[i] = chosen is not middle
-            notes += chosen.notes
+            for name in chosen.undetermined if leaves_open[i] else ():
+                own = ranges.setdefault(name, [])
+                first = own.pop()[0] if own and own[-1][1] == begin else begin
+                own.append((first, end))
     if not leaves_open.any():
         return path
-    path = replace(path, open=leaves_open, left_open=tuple(dict.fromkeys(notes)))
+    path = replace(path, open=leaves_open, left_open=tuple((name, tuple(own)) for name, own in ranges.items()))
     amplitudes, gap = path.rigid_amplitudes.copy(), path.gap.copy()
     pressed = np.vstack([path.pressure[:1], np.maximum(path.pressure[1:], path.pressure[:-1]), path.pressure[-1:]]) > 0
     for i, t in enumerate(path.parameter.tolist()):

@@ -73,9 +73,14 @@ class Sensitivity(Leaf):
 
     def __repr__(self) -> str:
         """One line: key and rate of the peak."""
+        return f"<Sensitivity to {self.in_short}>"
+
+    @property
+    def in_short(self) -> str:
+        """Key and rate of the peak."""
         rising, falling = ("infinite" if it.peak is None else f"{it.peak:.6g}" for it in (self.rising, self.falling))
         peaks = f"{rising} rising, {falling} falling" if self.one_sided and rising != "infinite" else rising
-        return f"<Sensitivity to {self.key}: peak {peaks}{' per unit' * (rising != 'infinite')}>"
+        return f"{self.key}: peak {peaks}{' per unit' * (rising != 'infinite')}"
 
     def without_peak(self) -> Self:
         """Return a copy without the derivative of the largest pressure, which is infinite."""
@@ -116,9 +121,9 @@ class Sensitivities(Leaf):
         return len(self.each)
 
     def __repr__(self) -> str:
-        """One line: keys and notes."""
-        notes = "".join(f"; {note}" for note in self.notes)
-        return f"<Sensitivities to {', '.join(self.each) or 'nothing'}{notes}>"
+        """A line for each key with the rate of the peak, and for each note."""
+        head = f"<Sensitivities to {len(self)} parameter{'s' * (len(self) != 1)}>"
+        return "\n".join([head, *(item.in_short for item in self.each.values()), *self.notes])
 
     def knowing(self, accuracy: Accuracy) -> Self:
         """Return a copy with the accuracy of its mesh; the largest pressure has no derivative if it is infinite."""

@@ -44,19 +44,26 @@ NAMED: Mapping[str | int, str] = {
 }
 """Keys of a problem whose entries have names of the user's choice, and what an entry is called."""
 
+OR_ITS_ENTRY = "force"
+"""Key of a list that may be written as its only entry."""
+
 
 def existing_path(data: Any, path: KeyPath) -> KeyPath:
     """Follow a path through the data of a problem, and replace names of list entries by their positions.
 
-    A key of the only entry of a list leads to it, for a list of one may be written as its entry. Keys that are not
-    stated are kept, for they may have defaults. `ProblemError` if the path leads into a value without
-    entries, or to an entry that a list or one of the `NAMED` mappings does not have.
+    A key of the only entry of a list leads to it, for a list of one may be written as its entry; then [0] leads to the
+    entry. Keys that are not stated are kept, for they may have defaults. `ProblemError` if the path leads into a value
+    without entries, or to an entry that a list or one of the `NAMED` mappings does not have.
     """
     whole: Any = data
     followed: KeyPath = ()
     for step in path:
         _ensure_named(data, step, followed)
         _ensure_own(data, step, followed, path)
+        if followed[-1:] == (OR_ITS_ENTRY,):
+            data = data or None
+            if step == 0 and (data is None or isinstance(data, Mapping)):
+                continue
         if isinstance(data, list | tuple):
             if len(data) == 1 and isinstance(data[0], Mapping) and step in data[0] and "name" not in data[0]:
                 followed, data = (*followed, 0), data[0].get(step)

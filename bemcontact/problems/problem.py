@@ -301,6 +301,17 @@ class Problem(StatedBodies):
         parts = (raw.below(cls, key) for key in ("load_cases", "combinations"))
         return [item.name for part in parts for item in part.named()]
 
+    def __repr__(self) -> str:
+        """One line: the name, and how many bodies, edges, zones and load cases there are."""
+        counts = (
+            ("body", "bodies", self.bodies), ("edge", "edges", self.edges),
+            ("contact zone", "contact zones", self.zones), ("load case", "load cases", self.load_cases),
+        )  # fmt: skip
+        words = (f"{len(items)} {one if len(items) == 1 else more}" for one, more, items in counts if items)
+        return f"<Problem {self.title!r}: {', '.join(words)}; bemcontact.dumps writes it>"
+
+    __str__ = __repr__
+
     @property
     def case_names(self) -> tuple[str, ...]:
         """Names of the load cases, then of the combinations."""

@@ -1,5 +1,6 @@
 """The base class of all parts of a problem, the types of their values, and the translation of their errors."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Self
@@ -225,10 +226,12 @@ PositivePair = Annotated[tuple[Positive, Positive], BeforeValidator(_pair)]
 
 
 def _translated_errors(cls: type[BaseModel], error: ValidationError) -> list[Issue]:
-    """Translate the errors of one class; a missing key is not reported together with its misspelling."""
+    """Translate the errors of one class; a missing key is not reported together with its misspelling or other word."""
     details = error.errors(include_url=False)
     unknown = {str(item["loc"][-1]) for item in details if item["type"] == "extra_forbidden" and len(item["loc"]) == 1}
     meant = {near_by(key, cls.model_fields) for key in unknown} if len(unknown) <= MANY_WORDS else set[str | None]()
+    others = cls.other_words if issubclass(cls, SpecModel) else {}
+    meant |= {word for key in unknown for word in re.findall(r"\w+", others.get(key, ""))}
     return [
         _issue(item) if _is_translated(item) else _translated(cls, item)
         for item in details

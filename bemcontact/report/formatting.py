@@ -101,7 +101,11 @@ def _conditions(condition: Condition, edge: Edge, units: Units) -> Iterator[str]
     if condition.pressure is not None:
         yield f"pressure {field_on(condition.pressure, edge, units.stress)}"
     for force in condition.force:
-        over = "" if force.width is None else f" over {with_unit(number(force.width), units.length)}"
+        over = ""
+        if force.width is not None:
+            middle = np.array([sum(force.part(edge.length)) / 2 / edge.length]).clip(0, 1)
+            place = vector(edge.points(middle)[0].tolist(), units.length, scale=edge.length)
+            over = f" over {with_unit(number(force.width), units.length)} around {place}"
         yield f"force {vector((force.x, force.y), units.line_force)}{over}"
 
 

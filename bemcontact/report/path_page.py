@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from bemcontact.analysis.result import BEYOND
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.problems import Problem, Units
 from bemcontact.report.bars import BARS_ARE, with_bar
@@ -19,7 +20,7 @@ from bemcontact.report.formatting import (
 )
 from bemcontact.report.page import Picture, picture, template
 from bemcontact.report.path_verdicts import path_verdicts
-from bemcontact.report.verdicts import BEYOND, NOT_LOOKED_AT, overall
+from bemcontact.report.verdicts import NOT_LOOKED_AT, overall
 from bemcontact.version import __version__
 
 MOST_ROWS = 500

@@ -7,7 +7,7 @@ import numpy as np
 
 from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.load_cases import CaseResults
-from bemcontact.analysis.result import Result
+from bemcontact.analysis.result import BEYOND, Result
 from bemcontact.assessment.contender import OUTCOMES
 from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, SHEAR_BELOW, StressPeak
 from bemcontact.options import StressMeasure
@@ -41,7 +41,7 @@ from bemcontact.report.formatting import (
     zone_surfaces,
 )
 from bemcontact.report.page import picture, template
-from bemcontact.report.verdicts import BEYOND, NOT_LOOKED_AT, case_verdicts, overall, result_verdicts
+from bemcontact.report.verdicts import NOT_LOOKED_AT, case_verdicts, overall, result_verdicts
 from bemcontact.report.zones import by_case, zone_rows
 from bemcontact.version import __version__
 

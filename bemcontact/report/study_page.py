@@ -7,6 +7,7 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from bemcontact.analysis.result import BEYOND
 from bemcontact.errors import escaped_lines
 from bemcontact.problems.units import Units
 from bemcontact.report.bars import NOTHING, error_percent, with_error
@@ -81,7 +82,14 @@ def values_in_words(row: MemberRow) -> str:
 
 def value_in_words(value: Any) -> str:
     """A value on an axis."""
-    return f"{value:.10g}" if isinstance(value, float) else str(value)
+    match value:
+        case float():
+            return f"{value:.10g}"
+        case list():
+            return f"[{', '.join(map(value_in_words, value))}]"
+        case dict():
+            return f"{{{', '.join(f'{key}: {value_in_words(item)}' for key, item in value.items())}}}"
+    return str(value)
 
 
 def unit_of_output(column: str, units: Units) -> str:
@@ -106,7 +114,9 @@ def render(study: StudyTable, pictures: Mapping[str, bytes], spec: str | None) -
         verdicts=verdicts,
         overall=_overall(study),
         counts=[(status, count, QUALITY[MemberStatus(status)]) for status, count in study.counts.items()],
-        axes=[(axis.name, *_extent(axis.values)) for axis in study.axes],
+        axes=[
+            (axis.name, axis.keys if axis.keys != (axis.name,) else (), *_extent(axis.values)) for axis in study.axes
+        ],
         columns=[(name, unit_of_output(name, study.units)) for name in study.columns],
         rows=[*_cells(study, MOST_ROWS)],
         most=MOST_ROWS,
@@ -168,6 +178,9 @@ def study_summary(study: StudyTable, seconds: float, place: str | None = None) -
             add(shown, "Note", _sentence(row))
     if len(short) > MOST_NAMED:
         add(shown, "Note", f"{len(short) - MOST_NAMED} further members do not hold; the table has the reason of each")
+    if beyond := [row for row in study.rows if row.holds is not False and BEYOND in row.message]:
+        count = f"{len(beyond)} {plural('member', len(beyond))}"
+        add(shown, "Note", f"error bars of {count} leave something out. {_sentence(beyond[0])}")
     if place is not None:
         add(shown, "Written", place)
     for verdict in verdicts:

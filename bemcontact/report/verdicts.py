@@ -14,8 +14,6 @@ NOT_LOOKED_AT = (
     "surfaces do not yield. Whether the input is that of your part: compare the picture of the problem with it."
 )
 """What no verdict covers."""
-BEYOND = "do not include"
-"""What a note says of error bars that leave out its subject."""
 
 
 class Verdict(NamedTuple):

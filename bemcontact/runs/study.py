@@ -77,8 +77,9 @@ def study(
     ----------
     problem : Problem
     vary : lists of values by key, such as ``{"conditions.top.pressure": [10, 20]}``. Keys are those of
-        `Problem.with_value`; "variant"; "case" for load cases; "load_cases.wind" for the factor of one. A tuple of keys
-        takes the same values. Of a problem with load cases all are solved, unless one is chosen.
+        `Problem.with_value`; "variant"; "case" for load cases; "load_cases.wind" for the factor of one. A tuple of
+        keys, or keys with commas between them, take the same values. "radius: KEY1,KEY2" names the column of the table.
+        Of a problem with load cases all are solved, unless one is chosen.
     outputs : names of outputs, such as "peak", "resultant", "force", "length.foot"; each row keeps all of them
     folder : for tables, page and pictures, and for a journal from which a run that ended early goes on
     workers : number of processes; 1 solves in this process. With more, a script needs the line

@@ -2,24 +2,29 @@
 
 import json
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
 
 from bemcontact.checks.arguments import instance_of, shown, text_of_argument
-from bemcontact.errors import Issue, KeyPath, OptionError, ProblemError, SpecError
+from bemcontact.errors import Issue, KeyPath, OptionError, ProblemError, SpecError, dotted
 from bemcontact.problems.key_path import parsed_path
 from bemcontact.problems.quantities import in_units
 from bemcontact.problems.units import Units
 from bemcontact.spec import written_value
+from bemcontact.studies.outputs import DIMENSIONS
 
 VARIANT, CASE = "variant", "case"
 """Keys of an axis whose values are names of variants, and of load cases or combinations."""
 MOST_MEMBERS = 1_000_000
 """Largest number of members of a study."""
-_RANGE = re.compile(r"\s*([^:\s]+)\s*:\s*([^:\s]+)\s*:\s*([^:\s]+)\s*")
+COLUMNS = ("member", VARIANT, CASE, "status", "equations", "mesh", "message")
+"""Columns of the table that have their names, beside the outputs."""
+_NAMED = re.compile(r"\s*([^.,:=\[\]]*[^.,:=\[\]\s])\s*:(.*)", re.DOTALL)  # a key with a colon has a point before it
+_RANGE = re.compile(r"\s*([^:\s{}]+)\s*:\s*([^:\s{}]+)\s*:\s*([^:\s{}]+)\s*")
 _IN_UNITS = r"\s*([-+.\deE]+)\s*([^-+.\d:\s][^:]*?)\s*:"
 _RANGE_IN_UNITS = re.compile(2 * _IN_UNITS + r"\s*(\d+)\s*")
 _PART_OF_RANGE = re.compile(r"\s*[-+.\d][-+.\deE]*(\s*:\s*[-+.\deE]*)+")
@@ -28,14 +33,35 @@ _OPENING, _CLOSING, _QUOTES = "[{(", "]})", "\"'"
 
 @dataclass(frozen=True, kw_only=True)
 class Axis:
-    """Keys that take the same value, and the values one after the other."""
+    """Keys that take the same value, and the values one after the other.
+
+    Parameters
+    ----------
+    keys : as written
+    values : one or more
+    title : name that the user gave it, if any
+    """
 
     keys: tuple[str, ...]
     values: tuple[Any, ...]
+    title: str = ""
 
     @property
     def name(self) -> str:
-        """Key, or keys with commas between them."""
+        """Title; without one the key, of several keys what is particular in the first and how many more there are."""
+        if self.title or len(self.keys) == 1:
+            return self.title or self.keys[0]
+        first, alike = self.paths[0], 0
+        for number, steps in enumerate(zip(*self.paths, strict=False)):
+            if isinstance(first[number], str):
+                alike = number
+            if len({*steps}) > 1:
+                break
+        return f"{dotted(first[alike:])} + {len(self.keys) - 1} more"
+
+    @property
+    def written(self) -> str:
+        """Keys with commas between them."""
         return ",".join(self.keys)
 
     @property
@@ -58,6 +84,10 @@ def axes_of(vary: Mapping[Any, Any], units: Units) -> tuple[Axis, ...]:
     axes = tuple(_axis(keys, values, units) for keys, values in vary.items())
     if not axes:
         raise OptionError("there is nothing to vary; give values by key")
+    names = Counter(axis.name for axis in axes)
+    if twice := [axis.title for axis in axes if axis.title and names[axis.title] > 1]:
+        raise OptionError(f"two axes have the name '{twice[0]}'; give each its own")
+    axes = tuple(replace(axis, title=axis.written) if names[axis.name] > 1 else axis for axis in axes)
     stated = [path for axis in axes for path in axis.paths]
     for number, path in enumerate(stated):
         if path in stated[:number]:
@@ -69,25 +99,39 @@ def axes_of(vary: Mapping[Any, Any], units: Units) -> tuple[Axis, ...]:
 
 
 def _axis(keys: object, values: object, units: Units) -> Axis:
-    """One axis from a key, several keys with commas between them or in a tuple, and values."""
-    parts = keys if isinstance(keys, tuple) else text_of_argument(keys, "a key of vary").split(",")
-    axis = Axis(keys=tuple(text_of_argument(part, "a key of vary").strip() for part in parts), values=())
+    """One axis from a key, several keys with commas between them or in a tuple, and values.
+
+    A name may stand before the keys, and a colon between.
+    """
+    title = ""
+    if not isinstance(keys, tuple):
+        title, keys = _title_and_keys(text_of_argument(keys, "a key of vary"))
+        keys = tuple(keys.split(","))
+    axis = Axis(keys=tuple(text_of_argument(key, "a key of vary").strip() for key in keys), values=(), title=title)
+    if title.removesuffix("_error") in (*COLUMNS, *DIMENSIONS):
+        raise OptionError(f"'{title}' is another column of the table; give the axis another name")
     if (paths := axis.paths) and len(paths) > 1 and {(VARIANT,), (CASE,)} & {*paths}:
-        raise OptionError(f"{axis.name}: variants and load cases are varied alone, without other keys")
+        raise OptionError(f"{axis.written}: variants and load cases are varied alone, without other keys")
     if isinstance(values, str | bytes | Mapping) or not hasattr(values, "__iter__"):
-        raise OptionError(f"{axis.name}: a list of values is needed; found {shown(values)}")
+        raise OptionError(f"{axis.written}: a list of values is needed; found {shown(values)}")
     plain = map(_plain, cast(Sequence[object], values))
     listed = tuple(in_units(value, axis.paths[0], units.length, units.force) for value in plain)
     if not listed:
-        raise OptionError(f"{axis.name}: there are no values")
+        raise OptionError(f"{axis.written}: there are no values")
     seen = set[str]()
     for value in listed:
-        if (text := _text(axis.name, value)) in seen:
-            raise OptionError(f"{axis.name}: the value {shown(value)} occurs twice; remove one")
+        if (text := _text(axis.written, value)) in seen:
+            raise OptionError(f"{axis.written}: the value {shown(value)} occurs twice; remove one")
         seen.add(text)
         if axis.keys[0] in (VARIANT, CASE) and not isinstance(value, str):
-            raise OptionError(f"{axis.name}: a name is needed; found {shown(value)}")
-    return Axis(keys=axis.keys, values=listed)
+            raise OptionError(f"{axis.written}: a name is needed; found {shown(value)}")
+    return replace(axis, values=listed)
+
+
+def _title_and_keys(text: str) -> tuple[str, str]:
+    """Name of an axis, empty without one, and its keys."""
+    named = _NAMED.fullmatch(text)
+    return (named[1], named[2].strip()) if named else ("", text.strip())
 
 
 def _text(name: str, value: object) -> str:
@@ -124,7 +168,7 @@ def written_axis(text: str) -> tuple[str, list[Any]]:
     keys, equals, written = _at_equals(text)
     if not equals:
         raise OptionError(f"{text}: there is no '='; write {text}=a:b:n for n values from a to b, or {text}=v1,v2")
-    if keys.strip() in (VARIANT, CASE):
+    if _title_and_keys(keys)[1] in (VARIANT, CASE):
         return keys, [item.strip().strip(_QUOTES) for item in _items(written)]
     if parts := _RANGE.fullmatch(written):
         return keys, _range(keys, *parts.groups())
@@ -138,7 +182,7 @@ def written_axis(text: str) -> tuple[str, list[Any]]:
     try:
         return keys, [written_value(item, keys) for item in _items(written)]
     except SpecError as error:
-        raise OptionError(str(error)) from None
+        raise OptionError(str(error).partition("\n")[0]) from None
 
 
 def _at_equals(text: str) -> tuple[str, str, str]:
@@ -182,4 +226,4 @@ def _items(text: str) -> Iterator[str]:
 
 def located_in(axis: Axis, error: ProblemError) -> ProblemError:
     """The error of a value of an axis, with the key where the error has no place."""
-    return error if any(issue.path for issue in error.issues) else ProblemError(f"{axis.name}: {error}")
+    return error if any(issue.path for issue in error.issues) else ProblemError(f"{axis.written}: {error}")

@@ -86,8 +86,9 @@ class StudyPlan:
 
     def keys(self) -> list[str]:
         """Key of each member in the journal; it depends on the problem, the values and the version alone."""
-        digest = self.digest()
-        texts = (json.dumps([digest, sorted(self.values(i).items())]) for i in range(len(self)))
+        digest, written = self.digest(), {axis.name: axis.written for axis in self.axes}
+        values = (sorted((written[name], value) for name, value in self.values(i).items()) for i in range(len(self)))
+        texts = (json.dumps([digest, its]) for its in values)
         return [hashlib.sha256(text.encode()).hexdigest()[:32] for text in texts]
 
     @property

@@ -6,7 +6,7 @@ from enum import StrEnum
 from math import isfinite
 from typing import Any
 
-from bemcontact.analysis.result import Result
+from bemcontact.analysis.result import BEYOND, Result
 from bemcontact.serialization import Leaf
 from bemcontact.studies.outputs import Reading, readings
 
@@ -28,7 +28,7 @@ class MemberRow(Leaf):
     number: int
     """Number of the member, from 0 on; the first axis changes slowest."""
     values: dict[str, Any]
-    """Value on each axis, by its keys."""
+    """Value on each axis, by its name."""
     status: MemberStatus
     """How the member ended: holds, mesh not assessed (no accuracy is asked), mesh not met, not certified, or failed."""
     equations: str
@@ -40,7 +40,7 @@ class MemberRow(Leaf):
     mesh_error: float | None
     """Largest error bar, relative; null if it is not known."""
     message: str
-    """Why the member does not hold, or has no peak, in sentences; empty if neither is so."""
+    """Why the member does not hold, or has no peak, and what its error bars do not include, in sentences."""
     outputs: dict[str, Reading]
     """Outputs by name; none if the member failed."""
 
@@ -73,7 +73,7 @@ def row_of(number: int, values: Mapping[str, Any], result: Result) -> MemberRow:
         certified=result.certified,
         met=accuracy.met,
         mesh_error=float(accuracy.worst) if known else None,
-        message=_joined(_message(status, result), _without_peak(result)),
+        message=_joined(_joined(_message(status, result), _without_peak(result)), _beyond_bars(result)),
         outputs=readings(result),
     )
 
@@ -104,6 +104,11 @@ def _without_peak(result: Result) -> str:
     if result.accuracy.infinite:
         return f"the peak pressure is infinite in {', '.join(result.accuracy.infinite)}"
     return "" if result.footprint.intervals else "the body touches no surface"
+
+
+def _beyond_bars(result: Result) -> str:
+    """Notes on errors that no error bar includes; those of a result that is not certified do not matter."""
+    return "; ".join(note for note in result.notes if BEYOND in note) if result.certified else ""
 
 
 def failed_row(number: int, values: Mapping[str, Any], message: str) -> MemberRow:

@@ -27,6 +27,8 @@ from bemcontact.views import Tabular
 class AxisRecord(Leaf):
     """An axis of a study."""
 
+    name: str
+    """Name of its column in the table."""
     keys: tuple[str, ...]
     """Keys of the problem that take the same value."""
     values: tuple[Any, ...]
@@ -105,7 +107,7 @@ class StudyTable(Recorded, Tabular):
         Returns
         -------
         dict
-            Column -> values of all members, None where there is none: ``member``; each axis by its keys; ``status``,
+            Column -> values of all members, None where there is none: ``member``; each axis by its name; ``status``,
             ``equations``, ``mesh`` and ``mesh_error`` (relative); each output, and its error in the same unit as
             ``peak_error``; ``message``.
         """
@@ -155,7 +157,7 @@ class StudyTable(Recorded, Tabular):
             holds=self.holds,
             counts=self.counts,
             units=UnitsRecord(**self.units.model_dump(include={"length", "force"})),
-            axes=[AxisRecord(keys=axis.keys, values=axis.values) for axis in self.axes],
+            axes=[AxisRecord(name=axis.name, keys=axis.keys, values=axis.values) for axis in self.axes],
             columns=self.columns,
             rows=list(self.rows),
         )

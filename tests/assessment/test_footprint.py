@@ -117,6 +117,13 @@ def test_ends_lie_on_the_curve():
     assert interval.end == pytest.approx((2 * np.sin(0.415), -2 * np.cos(0.415)), abs=1.6e-5)
 
 
+def test_an_interval_has_a_perimeter_in_print_where_the_boundary_closes_on_itself():
+    (open_ended,) = footprint(*along_x(np.linspace(-2, 2, 21), -0.73, 1.11)).intervals
+    (closed,) = ring(3.0, 0.5).intervals
+    assert repr(open_ended).endswith("run=0)")
+    assert repr(closed).endswith(f"run=0, perimeter={2 * np.pi!r})")
+
+
 def ring(center: float, half: float, n: int = 40) -> Footprint:
     """Contact around one angle on a full circle of radius 1."""
     angle = 2 * np.pi * np.arange(n) / n

@@ -55,6 +55,16 @@ def test_contour_keeps_conditions_that_it_does_not_replace():
     assert gap == pytest.approx(np.full(13, 0.005), rel=1e-11)
 
 
+def test_contour_of_a_body_on_springs():
+    """A stiff body sinks into its springs by the load of the contour over their stiffness: 3 · 2 / (40 · 2).
+
+    Collocation on this mesh leaves a thousandth of the force.
+    """
+    sides = {side: {"spring": {"tangent": 40.0, "normal": 10.0}} for side in ("right", "left")}
+    gap = body_of(bar(contour({"top": {"pressure": 3}}), sides, modulus=1e9)).points.gap
+    assert gap == pytest.approx(np.full(13, 0.075), rel=2e-3)
+
+
 def test_volume_loads_of_the_problem_do_not_deflect_the_contour():
     """A hanging bar is lengthened by ρ g h²/2E = 0.03 by its weight; the weight in the problem does not act."""
     weight = {"gravity": {"density": 6, "acceleration": [0, -10]}}

@@ -139,13 +139,45 @@ def test_modulus_of_each_of_two_bonded_bodies_against_differences():
     assert np.abs(rest).max() < 1e-8 * largest
 
 
-def test_modulus_beside_a_body_on_springs_against_differences():
-    """The compliance of the body on springs is no multiple of 1/E: only its own modulus has no derivative here."""
-    spring = {"spring": {"normal": 300.0, "tangent": 50.0}}
-    problem = pressed().with_value("bodies.wall.conditions.bottom", spring)
-    assert_as_differences(problem, DISK)
-    with pytest.raises(ProblemError, match="the body 'wall' is on springs"):
-        bemcontact.sensitivities(problem, [WALL])
+@pytest.mark.parametrize("held", [{"normal": 3e3, "tangent": 500.0}, {"normal": 3e3}])
+def test_modulus_of_a_body_on_springs_and_of_one_beside_it_against_differences(held: Spec):
+    """Springs do not become stiffer with the body; temperature strains it by the same, and without a tangent it slides.
+
+    Prescribed displacements hold the disk, and one side of the block where springs let it slide.
+    """
+    loads = {"temperature": {"expansion": 1e-4, "change": 10}, "gravity": {"density": 0.3, "acceleration": [0, -9]}}
+    problem = pressed(loads=loads).with_value("bodies.wall.conditions.bottom", {"spring": held})
+    if "tangent" not in held:
+        problem = problem.with_value("bodies.wall.conditions.right", {"displacement": {"x": 0.002}})
+    assert_as_differences(problem, DISK, WALL)
+
+
+def test_bodies_moduli_springs_and_displacements_scale_together():
+    """Pressures are multiplied as all moduli and springs are: the sum of E dp/dE and of K dp/dK is p.
+
+    Differences give dp/dK.
+    """
+    spring = "bodies.wall.conditions.bottom.spring.normal"
+    problem = pressed().with_value("bodies.wall.conditions.bottom", {"spring": {"normal": 300.0}})
+    problem = problem.with_value("bodies.wall.conditions.right", {"displacement": {"x": 0.0}})
+    rates = bemcontact.sensitivities(problem, [DISK, WALL])
+    ends = [problem.with_value(spring, 300.0 * (1 + s)).on_pairs_of(problem) for s in (1e-6, -1e-6)]
+    after, before = (bemcontact.solve(end).solution.pressure for end in ends)
+    whole = relative_sum(problem, rates, DISK, WALL) + (after - before) / 2e-6
+    pressure = rates.solution.pressure
+    assert np.abs(whole - pressure).max() < 1e-5 * pressure.max()
+
+
+def test_modulus_of_bonded_bodies_on_springs_against_differences():
+    """The support is on springs, and the layer is bonded to it: bonds and gaps follow both."""
+    problem = bonded().with_value("bodies.low.conditions.bottom", {"spring": {"normal": 200.0, "tangent": 30.0}})
+    assert_as_differences(problem, *(f"bodies.{body}.material.young_modulus" for body in ("up", "layer", "low")))
+
+
+def test_modulus_of_one_body_on_springs():
+    """A roller that is loaded presses on a beam on an elastic foundation, whose bending follows the springs."""
+    beam = bemcontact.load(MODELS / "gallery" / "beam_on_springs.yaml", variant="stated mesh")
+    assert_as_differences(beam, "material.young_modulus")
 
 
 @pytest.fixture(scope="module")

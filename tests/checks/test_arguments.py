@@ -286,4 +286,4 @@ def test_all_public_functions_are_called():
     for kind in (*kinds, bemcontact.Result, bemcontact.StressOperator):
         methods = {name for name, item in vars(kind).items() if inspect.isfunction(item) and not name.startswith("_")}
         with_arguments = {name for name in methods if len(inspect.signature(getattr(kind, name)).parameters) > 1}
-        assert with_arguments - {"save", "notes_between"} <= called, kind
+        assert with_arguments - {"save", "notes_at"} <= called, kind

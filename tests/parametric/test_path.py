@@ -1,6 +1,7 @@
 """Load paths: every state on them is the one that an independent solver or exhaustive search finds."""
 
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import exhaustive
@@ -294,6 +295,28 @@ def test_positions_that_contact_leaves_open_are_those_of_solutions():
                 np.testing.assert_allclose(state.pressure, solution.pressure, rtol=0, atol=1e-9 * scale.pressure)
                 np.testing.assert_allclose(apart, 0, rtol=0, atol=1e-8 * scale.displacement)
     assert opened > 5
+
+
+def test_positions_that_contact_leaves_open_are_noted_once_with_where_they_are():
+    """A motion is named in the ranges in which solutions leave it open; values of a parameter stand in place of t."""
+    several = 0
+    for seed in range(24):
+        ends = loose_path(seed)
+        if ends is None or not any(end.motion_load.any() for end in ends):
+            continue
+        path = load_path(*ends)
+        notes = [note for note in path.notes_at(lambda t: 100 * t) if note.startswith("not determined")]
+        assert len(notes) == path.open.any()
+        for begin, end in pairwise(path.parameter):
+            if begin < end:
+                named = {name for name, own in path.left_open if any(a <= begin and end <= b for a, b in own)}
+                assert named == {*path.at((begin + end) / 2).undetermined}
+        for name, own in path.left_open:
+            assert all(b < c for (_, b), (c, _) in pairwise(own))
+            where = " and ".join(f"from {100 * a:.6g} to {100 * b:.6g}" for a, b in own)
+            assert f"the {name} {where}" in notes[0]
+        several += len(path.left_open) > 1 or any(len(own) > 1 for _, own in path.left_open)
+    assert several > 2
 
 
 def test_points_that_enter_together_are_one_breakpoint():

@@ -89,9 +89,19 @@ def test_replacing_an_entry_does_not_change_the_original():
 def test_a_key_of_the_only_entry_of_a_list_leads_to_it():
     """A spec may state `force: {y: -200}` for a list of one force; with names or more entries there is a choice."""
     assert existing_path({"force": [{"x": 0, "y": -200}]}, ("force", "y")) == ("force", 0, "y")
-    for entries in ([{"y": 1}, {"y": 2}], [{"name": "a", "y": 1}], []):
+    for entries in ([{"y": 1}, {"y": 2}], [{"name": "a", "y": 1}]):
         with pytest.raises(ProblemError):
             existing_path({"force": entries}, ("force", "y"))
+
+
+@pytest.mark.parametrize("written", [{"y": -200}, None, {}, ()])
+def test_the_first_entry_of_a_list_that_is_written_as_its_entry_or_not_yet_is_that_entry(written):
+    for path in (("force", 0, "y"), ("force", "y")):
+        assert existing_path({"force": written}, path) == ("force", "y")
+    assert with_entry({"force": written}, ("force", "y"), 3)["force"] == {"y": 3}
+    for path in (("force", 1, "y"), ("material", 0, "young_modulus")):
+        with pytest.raises(ProblemError, match=r"no entry \[[01]\]"):
+            existing_path({"force": {"y": -200}, "material": {"young_modulus": 1}}, path)
 
 
 def test_value_under_a_misspelled_key_is_read():

@@ -3,6 +3,7 @@
 import pytest
 from messages import assert_each_states, assert_states
 
+import bemcontact
 from bemcontact.errors import ProblemError
 from bemcontact.problems import (
     Arc,
@@ -18,6 +19,15 @@ from bemcontact.problems import (
     Units,
 )
 from bemcontact.problems.problem import MeshDensity
+
+
+def test_a_problem_prints_one_line():
+    """Of several bodies all are counted, with the contacts between them."""
+    assert str(Problem(**parts())) == repr(Problem(**parts()))
+    assert repr(Problem(**parts())).startswith("<Problem 'quarter disk': 3 edges, 1 contact zone; ")
+    rollers = bemcontact.load("models/bodies/two_cylinders.yaml")
+    assert "2 bodies" in repr(rollers)
+    assert "1 contact zone" in repr(rollers)
 
 
 def parts():

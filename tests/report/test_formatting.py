@@ -24,6 +24,15 @@ def test_fields_are_stated_by_their_values_on_the_edge():
     assert formatting.field_on(Field(constant=0), bottom, "mm") == "0"
 
 
+def test_a_force_over_a_width_is_stated_with_its_place():
+    """The top goes from x = 40 to 0, so that a distance of 10 from its start is x = 30."""
+    problem = block()
+    for stated, place in (({"at": 10.0}, "(30, 20)"), ({}, "(20, 20)")):
+        pressed = problem.with_value("conditions.top", {"force": {"y": -5.0, "width": 2.0, **stated}})
+        (words,) = formatting.prescribed(pressed, pressed.edge("top"))
+        assert words == f"force (0, -5) N/mm over 2 mm around {place} mm"
+
+
 def test_surfaces_in_words():
     plane = Plane(kind="plane", point=(0, 0), normal=(0, 5))
     assert formatting.surface_in_words(plane) == "plane through (0, 0), normal (0, 1)"

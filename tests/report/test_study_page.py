@@ -55,6 +55,16 @@ def test_one_member_that_does_not_hold_changes_the_verdict(second: MemberRow, qu
     assert str(second.status) in page
 
 
+def test_the_summary_names_a_member_whose_error_bars_leave_something_out():
+    """A peak that is infinite is no such thing; each is a message of a member that holds."""
+    for text in ("off; error bars do not include this", "infinite"):
+        second = row(1, MemberStatus.HOLDS, 200.0, text)
+        console = Console(width=200, record=True, file=StringIO())
+        console.print(study_summary(study(GOOD, second), 1.0))
+        note = "error bars of 1 member leave something out. Member 1 (a.b = 1): Off; error bars do not include this."
+        assert (note in " ".join(console.export_text().split())) is ("bars" in text)
+
+
 def test_numbers_that_do_not_hold_are_in_no_range():
     """The summary has the smallest and largest value of members that hold; the page shows all with their status."""
     for second in (UNMET, OPEN):

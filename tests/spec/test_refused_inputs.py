@@ -48,6 +48,7 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
         ("edges: bottom", "edges: bottm"),
         ("  top: {pressure: 3}", "  tip: {pressure: 3}"),
         ("material:", "materiel:"),
+        ("  young_modulus: 210e3\n", "  E: 210e3\n"),
     ],
     "Numbers": [
         ("210e3", "'210e3'"),

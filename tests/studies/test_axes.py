@@ -19,6 +19,9 @@ from bemcontact.studies.axes import axes_of, written_axes, written_axis
         ("a=3,1e2,-4", "a", [3, 100.0, -4]),
         ("a=[1, 2],[3, 4]", "a", [[1, 2], [3, 4]]),
         ("a={x: 1, y: 2},{x: 3}", "a", [{"x": 1, "y": 2}, {"x": 3}]),
+        ("a={y: -1},{y: -2}", "a", [{"y": -1}, {"y": -2}]),  # two colons, and no range
+        ("its size: a.x,b.y=1,2", "its size: a.x,b.y", [1, 2]),
+        ("mesh of: variant=fine,1:2:3", "mesh of: variant", ["fine", "1:2:3"]),
         ("a='x, y',z", "a", ["x, y", "z"]),
         ("variant=paper,stated mesh", "variant", ["paper", "stated mesh"]),
         ("case=1:2:3", "case", ["1:2:3"]),  # a name may have colons
@@ -41,6 +44,7 @@ def test_written_axes_are_read(text: str, keys: str, values: list[Any]):
         ("a=1:1:4", "two different"),
         ("a=1:inf:4", "finite"),
         ("a=[1", "bracket"),
+        ("a={-1,-2}", "a key must be a text, found '-1'; write it in quotes"),
         ("a=1 GPa:2 MPa:2", "both ends of a range need one unit; found GPa and MPa"),
     ],
 )
@@ -70,13 +74,43 @@ def test_a_key_given_twice_is_refused():
 
 def test_arrays_and_tuples_become_lists_of_numbers():
     (axis,) = axes_of({("a", "b"): np.array([1.0, 2.0])}, Units())
-    assert (axis.keys, axis.values, axis.name) == (("a", "b"), (1.0, 2.0), "a,b")
+    assert (axis.keys, axis.values, axis.written) == (("a", "b"), (1.0, 2.0), "a,b")
     assert axes_of({"a": [(1, 2), (3, 4)]}, Units())[0].values == ([1, 2], [3, 4])
+
+
+@pytest.mark.parametrize(
+    ("keys", "name"),
+    [
+        ("material.young_modulus", "material.young_modulus"),
+        ("boundary.outer.rim.radius,boundary.outer.rim.center[1],boundary.outer.axis.start[1]", "rim.radius + 2 more"),
+        ("a.top.force[0].y,a.left.force[0].y", "top.force[0].y + 1 more"),
+        ("a.rim.center[0],a.rim.center[1]", "center[0] + 1 more"),  # a number says nothing without its list
+        ("load_cases.wind,load_cases.snow", "wind + 1 more"),
+        ("a.b,a.b.c", "b + 1 more"),
+        ("radius: a.b,c.d", "radius"),
+        (" the load : load_cases.a:b", "the load"),  # of colons, only that before the key ends a name
+        ("load_cases.a:b", "load_cases.a:b"),
+        (("a.x: b", "c.y: d"), "a.x: b + 1 more"),
+    ],
+)
+def test_the_name_of_an_axis_is_that_of_the_user_or_what_is_particular_in_the_first_key(keys: Any, name: str):
+    (axis,) = axes_of({keys: [1]}, Units())
+    assert axis.name == name
+
+
+def test_axes_of_one_name_have_all_their_keys_in_it():
+    axes = axes_of({"a.x,a.y": [1], "b.x,b.y": [1], "c.z": [1]}, Units())
+    assert [axis.name for axis in axes] == ["a.x,a.y", "b.x,b.y", "c.z"]
 
 
 @pytest.mark.parametrize(
     ("vary", "says"),
     [
+        ({"size: a": [1], "size: b": [1]}, "two axes have the name 'size'"),
+        ({"b: a": [1], "b": [1]}, "two axes have the name 'b'"),
+        ({"peak: a": [1]}, "'peak' is another column of the table"),
+        ({"mesh_error: a": [1]}, "'mesh_error' is another column of the table"),
+        ({"case: a": [1]}, "'case' is another column of the table"),  # load cases may be added to the axes
         ({}, "nothing to vary"),
         ([], "vary must be a Mapping"),
         ({"a": []}, "no values"),

@@ -38,6 +38,14 @@ def test_several_keys_take_the_same_value():
         study_plan(CYLINDER, {RADIUS[0]: [7, 9]})
 
 
+def test_the_name_of_an_axis_does_not_change_the_keys_of_the_journal():
+    """Its rows are known by keys and values, so that a study may get names later."""
+    grids = ({",".join(RADIUS): [7, 9], LOAD: [1]}, {f"radius: {','.join(RADIUS)}": [7, 9], f"z: {LOAD}": [1]})
+    plain, named = (study_plan(CYLINDER, vary) for vary in grids)
+    assert plain.keys() == named.keys()
+    assert [*named.values(0)] == ["radius", "z"]
+
+
 def test_load_cases_are_members_unless_they_are_chosen():
     assert WEDGE.case_names
     plan = study_plan(WEDGE, {"accuracy": [0.01]})

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import bemcontact
+from bemcontact.analysis.result import BEYOND
 from bemcontact.studies.rows import MemberStatus, row_from, row_of
 
 MODELS = Path(__file__).parents[2] / "models"
@@ -29,6 +30,21 @@ def test_a_row_says_why_it_has_no_peak():
     row = row_of(0, {}, bemcontact.solve(bemcontact.load(MODELS / "gallery" / "flat_punch.yaml")))
     assert (row.holds, row.outputs["peak"].value) == (True, None)
     assert row.message == "the peak pressure is infinite in punch"
+
+
+def test_a_row_has_the_notes_on_what_its_error_bars_do_not_include():
+    """A roller that is drawn as far as its radius from its seat holds, with a note, as of `solve`."""
+    roller = bemcontact.load(MODELS / "gallery" / "hertz_small.yaml")
+    far = roller.with_value("contact_zones.foot.surface", {
+        "kind": "circle", "center": [0, -30], "radius": 20, "body": "outside"
+    })  # fmt: skip
+    result = bemcontact.solve(far)
+    row = row_of(0, {}, result)
+    notes = [note for note in result.notes if BEYOND in note]
+    assert row.holds
+    assert notes
+    assert row.message == "; ".join(notes)
+    assert row_of(0, {}, bemcontact.solve(roller)).message == ""
 
 
 def test_a_mesh_that_is_not_assessed_neither_holds_nor_fails():
