@@ -24,6 +24,7 @@ from bemcontact.report.figures.page import (
     VERMILION,
     add_path,
     frame_plan,
+    name_axis,
     pieces_of,
     plain,
     short_label,
@@ -201,7 +202,8 @@ def sketch_contact(
     loops = [loop for own in bodies for loop in own]
     setting = setting or setting_of([result], zone)
     window, size, part = setting.window, setting.size, setting.part
-    fans = [fan for fan in _fans(result, state) if not part or (zone == fan.zone and _seen(fan, window))]
+    every = [fan for fan in _fans(result, state) if not part or zone == fan.zone]
+    fans = [fan for fan in every if not part or _seen(fan, window)]
     reach = size if part else OVERHANG * size
     surfaces = [*surfaces_of(result, problem, reach)]
     grounds = [draw_ground(axes, it.points, it.normals, 0.025 * size, GREY) for it in surfaces]
@@ -230,6 +232,8 @@ def sketch_contact(
     beyond = [fan.feet + ROOM * (tip - fan.feet) for fan, tip in zip(fans, tips, strict=True)]
     drawn = np.concatenate([window, *beyond, *([] if part else covered), *symbols])
     frame_plan(axes, drawn, units.length)
+    if len(fans) < len(every):
+        name_axis(axes.xaxis, f"{axes.get_xlabel()}\n{len(fans)} of {len(every)} contacts of this zone")
     if stress is not None:
         fill_with_stress(axes, result, stress, window=window if part else None)
 

@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 from functools import cache
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
-from drawings import block_in_a_corner, leaves
+from drawings import block_in_a_corner, leaves, roller_in_a_groove
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mesh_studies import punch
@@ -22,6 +23,7 @@ from bemcontact.problems import Problem, Units
 from bemcontact.report import figures
 from bemcontact.report.facts import peak_of
 from bemcontact.report.figures.load_cases import shown_cases
+from bemcontact.report.figures.page import new_page
 from bemcontact.report.verdicts import case_verdicts, in_short
 
 MODELS = Path(__file__).parents[3] / "models"
@@ -154,6 +156,32 @@ def test_zones_with_equal_pressures_are_both_seen():
     legend = axes.get_legend()
     assert legend is not None
     assert legend.get_window_extent().y0 >= axes.get_window_extent().y1
+
+
+def test_what_curves_are_stands_between_the_name_of_the_zone_and_the_axes():
+    """The roller touches both sides of the groove, which are one zone: two curves, named by where they begin."""
+    result = analysis.solve(roller_in_a_groove())
+    for draw in (figures.draw_pressure, figures.draw_gap):
+        page = new_page(5.4, 3.6)
+        axes = page.add_subplot()
+        draw(axes, result, "seat")
+        page.draw_without_rendering()
+        legend = axes.get_legend()
+        assert legend is not None
+        assert legend.get_title().get_text() == "seat"
+        texts = [legend.get_title(), *legend.get_texts()]
+        assert all(text.get_text().startswith("from (") for text in texts[1:])
+        boxes = [text.get_window_extent() for text in texts]
+        assert all(not one.overlaps(other) for one, other in combinations(boxes, 2))
+        assert all(box.y0 >= axes.get_window_extent().y1 for box in boxes)
+        assert all(box.x1 <= page.bbox.x1 for box in boxes)
+        assert axes.get_title(loc="left") == ""
+
+
+def test_a_close_up_says_how_many_contacts_of_its_zone_it_leaves_out():
+    axes = new_page(5.4, 4.2).add_subplot()
+    figures.draw_contact(axes, analysis.solve(roller_in_a_groove()), "seat")
+    assert axes.get_xlabel() == "x\n1 of 2 contacts of this zone"
 
 
 def test_result_of_a_condensed_problem_has_no_shape():
