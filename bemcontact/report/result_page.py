@@ -42,7 +42,7 @@ from bemcontact.report.formatting import (
 )
 from bemcontact.report.page import picture, template
 from bemcontact.report.verdicts import BEYOND, NOT_LOOKED_AT, case_verdicts, overall, result_verdicts
-from bemcontact.report.zones import by_case, zone_rows
+from bemcontact.report.zones import by_case, interval_rows, zone_rows
 from bemcontact.version import __version__
 
 ZONE_PICTURES = {"contact": "close-up of the contact, {stress}", "pressure": "pressure", "gap": "gap"}
@@ -95,6 +95,7 @@ def render(
         formulations=[] if comparisons is None else [*_formulations(comparisons)],
         cases=[_case(name, result, units) for name, result in cases.items()] if not alone else [],
         zones=[(name, row) for name, result in cases.items() for row in zone_rows(result.to_dict(), units)],
+        intervals=[(name, row) for name, result in cases.items() for row in interval_rows(result.to_dict(), units)],
         envelope=[*_envelope(cases, units)] if not alone else [],
         bars=[*accuracy_rows(alone["accuracy"], units)] if alone else [],
         bars_are=BARS_ARE,
