@@ -28,6 +28,7 @@ from bemcontact.report.facts import (
     total_force,
 )
 from bemcontact.report.figures.load_cases import shown_cases
+from bemcontact.report.figures.result import drawn_near
 from bemcontact.report.figures.stress import UNIFORM
 from bemcontact.report.formatting import (
     NEGLIGIBLE,
@@ -101,6 +102,7 @@ def render(
         bars_are=BARS_ARE,
         surfaces=zone_surfaces(first.problem) if first.problem else [],
         notes=[*_notes(cases)],
+        near=sentence_case(drawn_near([*cases.values()])),
         infinite=any(result.accuracy.infinite for result in cases.values()),
         assessed=any(result.accuracy.met is not None for result in cases.values()),
         not_looked_at=NOT_LOOKED_AT,

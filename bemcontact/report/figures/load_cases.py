@@ -35,6 +35,7 @@ from bemcontact.report.figures.page import (
 from bemcontact.report.figures.result import (
     ROW,
     WIDE,
+    drawn_near,
     entitle,
     of_zone,
     panels_of,
@@ -69,6 +70,8 @@ def figure_of_cases(cases: CaseResults, stress: StressMeasure = StressMeasure.VO
     *above, below = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
     for row, zone in enumerate(panels):
         draw_case_pressures(below.add_subplot(len(panels), 1, row + 1), cases, zone)
+    if words := drawn_near([*cases.results.values()]):
+        below.suptitle(words, x=0.01, ha="left", fontsize=10, color=GREY)
     entitle(figure, f"{wrapped(cases.name, 6 * INCHES)}: all load cases", case_verdicts(cases), 9 * INCHES)
     if above:
         draw_case_contacts(places_of(above[0], shown, rows, columns), cases, shown)

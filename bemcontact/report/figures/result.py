@@ -68,7 +68,8 @@ def figure_of_result(result: Result, stress: StressMeasure = StressMeasure.VON_M
     """Compose a page with contact, stress on the deformed shape, where the body is known, and pressure and gap.
 
     Each of a few zones has a row of its own, with a close-up if its contact is small beside the body. Of many zones
-    those with the largest forces have one; bars show the largest pressure and the force of each.
+    those with the largest forces and with the largest pressure have one; bars show the largest pressure and the force
+    of each, and a line says which are drawn.
     """
     state, zones = result.boundary, result.contact.zone_names
     rows, near = panels_of([result]), close_ups(result)
@@ -92,7 +93,9 @@ def figure_of_result(result: Result, stress: StressMeasure = StressMeasure.VON_M
     if bars:
         peaks = figure.add_subplot(grid[plans, :3])
         draw_zone_bars(peaks, result, "peak")
-        draw_zone_bars(figure.add_subplot(grid[plans, 3:], sharey=peaks), result, "force")
+        forces = figure.add_subplot(grid[plans, 3:], sharey=peaks)
+        draw_zone_bars(forces, result, "force")
+        name_axis(forces.xaxis, f"{forces.get_xlabel()}\n{drawn_near([result])}".rstrip())
     for row, (zone, name) in enumerate(zip(rows, names, strict=True), plans + len(below)):
         if name is not None and name in near:
             closer = figure.add_subplot(grid[row, :2])
@@ -114,13 +117,36 @@ def figure_of_result(result: Result, stress: StressMeasure = StressMeasure.VON_M
 
 
 def panels_of(results: Sequence[Result]) -> list[str | None]:
-    """Zones that have panels of their own: each of a few, of many those with the largest forces; None for all."""
+    """Zones that have panels of their own: each of a few, of many the `largest_zones`; None for all."""
     zones = results[0].contact.zone_names
     if len(zones) <= PANELS:
         return [*zones] if len(zones) > 1 else [None]
+    return [*largest_zones(results)] or [None]
+
+
+def largest_zones(results: Sequence[Result]) -> list[str]:
+    """Zones with the largest forces of all results, and that with the largest pressure; none without contact."""
+    zones, peaks = results[0].contact.zone_names, dict[str, float]()
     forces = {zone: max(float(np.hypot(*result.footprint.forces[zone])) for result in results) for zone in zones}
+    for order, zone in enumerate(zones):
+        infinite = any(zone in result.accuracy.infinite for result in results)
+        own = results[0].contact.zone == order
+        peaks[zone] = np.inf if infinite else max(float(it.solution.pressure[own].max()) for it in results)
     most = sorted((zone for zone in zones if forces[zone] > 0), key=lambda zone: -forces[zone])[:LARGEST]
-    return [zone for zone in zones if zone in most] or [None]
+    highest = max(zones, key=lambda zone: (peaks[zone], zone in most))
+    return [zone for zone in zones if zone in most or (most and zone == highest)]
+
+
+def drawn_near(results: Sequence[Result]) -> str:
+    """Write which of many contacts have panels of their own; nothing if all have."""
+    zones, shown = results[0].contact.zone_names, panels_of(results)
+    if len(zones) <= PANELS or None in shown:
+        return ""
+    forces = [max(float(np.hypot(*result.footprint.forces[zone])) for result in results) for zone in zones]
+    why = "the others do not touch"
+    if len(shown) < sum(force > 0 for force in forces):
+        why = f"the {LARGEST} with the largest forces" + ", and that with the largest pressure" * (len(shown) > LARGEST)
+    return f"drawn near: {len(shown)} of {len(zones)} contacts, {why}"
 
 
 def _fit(plans: Sequence[Axes], side: GridSpecBase | None, inches: float, least: float) -> tuple[list[float], float]:

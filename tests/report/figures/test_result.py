@@ -19,11 +19,13 @@ from bemcontact import spec
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problems import Problem, Units
-from bemcontact.report import figures
+from bemcontact.report import figures, result_page
 from bemcontact.report.facts import peak_of
 from bemcontact.report.figures.load_cases import shown_cases
 from bemcontact.report.figures.page import new_page
+from bemcontact.report.figures.result import drawn_near, panels_of
 from bemcontact.report.verdicts import case_verdicts, in_short
 
 MODELS = Path(__file__).parents[3] / "models"
@@ -341,8 +343,32 @@ def test_bars_show_each_of_many_contacts_that_is_closed():
     left_open = [name for name in force if name not in closed]
     assert peaks.get_title(loc="left").startswith(f"no contact: {left_open[0]}, ")
     panels = [axes.get_title(loc="left") for axes in page.axes if axes.get_ylabel().startswith("pressure")]
-    assert len(panels) == min(3, len(closed))
-    assert min(force[name] for name in panels) >= sorted(force.values())[-3] * (1 - 1e-9)
+    most = sorted(closed, key=lambda name: -force[name])[:3]
+    contact, pressure = result.contact, result.solution.pressure
+    highest = contact.zone_names[int(contact.zone[pressure.argmax()])]
+    assert [*panels] == [name for name in force if name in (*most, highest)]
+    assert forces.get_xlabel().endswith(drawn_near([result]))
+    assert drawn_near([result]).startswith(f"drawn near: {len(panels)} of {len(force)} contacts, ")
+
+
+@pytest.mark.parametrize("forces", [[5, 4, 3, 2, 1], [5, 4, 0, 0, 0]])
+def test_contacts_that_are_not_drawn_near_are_told(forces: list[float]):
+    """Of five contacts the fifth is narrow: its force is the least, and its pressure the largest."""
+    widths = np.array([1.0, 1.0, 1.0, 1.0, 0.01])
+    contact = CondensedContact.from_compliance(np.eye(5), -np.array(forces) / widths, weights=widths)
+    zones = tuple(f"pad {number}" for number in range(1, 6))
+    result = bemcontact.solve(
+        replace(contact, zone=np.arange(5), run=np.arange(5), run_length=np.full(5, np.inf), zone_names=zones)
+    )
+    shown = panels_of([result])
+    if forces[-1]:
+        assert shown == ["pad 1", "pad 2", "pad 3", "pad 5"]
+        assert drawn_near([result]).endswith("the 3 with the largest forces, and that with the largest pressure")
+    else:
+        assert shown == ["pad 1", "pad 2"]
+        assert drawn_near([result]) == "drawn near: 2 of 5 contacts, the others do not touch"
+    page = " ".join(result_page.render(result, {}, None).split())
+    assert drawn_near([result])[1:] in page
 
 
 def test_pictures_of_a_long_body_are_aligned():
