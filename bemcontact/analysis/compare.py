@@ -175,7 +175,7 @@ def compared_on(options: ComparisonOptions, prepared: Prepared, watch: Stopwatch
             qp3.import_cvxpy()
     attempts = [_attempted(attempt, options, contact, watch) for attempt in options.attempts]
     with watch.stage("comparison"):
-        compared = comparison(contact, reference, attempts, infinite=bool(prepared.accuracy.infinite))
+        compared = comparison(contact, reference, attempts, infinite=prepared.accuracy.infinite)
     answer = assessed(prepared, reference.solution, Weights.TRIBUTARY, watch)
     return MeshLevel(refine=1, comparison=compared, answer=answer)
 

@@ -28,10 +28,15 @@ from bemcontact.contact.stress import (
     StressPeak,
 )
 
-SEARCHES, AGAIN = 24, 0.7
+SEARCHES, AGAIN = 8, 0.7
 """Searches at a time, and the part of a maximum from which on other starts may lead to a larger one."""
+RISE, TOLD_APART = 1.0, 1e-4
+"""Most that a search gains over what its start is above its lowest neighbor, and the relative gain that no error bar
+tells from none. The top of a parabola is above the highest of evenly spaced samples by at most a quarter of this."""
 STEP, SETTLED, SHORTER, MOST_STEPS = 0.2, 1e-2, 0.3, 30
 """First step over the depth of the start, the last one over the first, their ratio, and the most steps."""
+MEET = 0.5
+"""Distance of two searches over their shorter step below which they meet."""
 SAMPLES = 65
 """Places on an element from which the depth of a point is measured first."""
 BESIDE_LINE = 1e-7
@@ -160,17 +165,19 @@ class _Search:
         """The largest maximum with its depth below the elements of a surface, or why there is none."""
         if not len(self.below):
             return None, NoPeak.NO_CONTACT
-        start, depth, values = self._starts()
+        start, depth, values, reach = self._starts()
         peak: StressPeak | None = None
         highest: _Ends | None = None
-        for first in range(0, len(start), SEARCHES):
-            if peak is not None and values[first] < AGAIN * peak.value:
-                break
-            some = slice(first, first + SEARCHES)
+        left = np.arange(len(start))
+        while len(left):
+            some, left = left[:SEARCHES], left[SEARCHES:]
             ends = self._climb(start[some], STEP * depth[some])
             peak = self._highest(ends, surface, peak)
             if highest is None or ends.values.max() > highest.values.max():
                 highest = ends
+            if peak is not None:
+                larger = (values >= AGAIN * peak.value) & (reach > (1 + TOLD_APART) * peak.value)
+                left = left[larger[left]]
         return peak, None if peak is not None else self._why(highest)
 
     def _highest(self, ends: _Ends, surface: IntArray, peak: StressPeak | None) -> StressPeak | None:
@@ -199,20 +206,24 @@ class _Search:
         near = np.hypot(*(mesh.nodes[singular] - highest).T) <= beside
         return NoPeak.TO_INFINITE if near.any() else NoPeak.TO_BOUNDARY
 
-    def _starts(self) -> tuple[Array, Array, Array]:
+    def _starts(self) -> tuple[Array, Array, Array, Array]:
         """Points (k, 2) that are larger than their neighbors, the largest first, their depths and values (k,).
 
-        None where stress is the same all over but for round-off.
+        The last array has the values (k,) that a search from there can reach. In a field that is nearly uniform many
+        points are larger than their neighbors, by so little that few of them can lead to the largest maximum. There are
+        none where stress is the same all over but for round-off.
         """
         points, pairs, stress, element = self.samples
         outer = np.append(~self.mirrors[element], np.zeros(len(points) - len(element), bool))
         values = np.nan_to_num(self.measure(stress), nan=-np.inf)
         if values.min() >= (1 - LEVEL) * values.max():
-            return np.zeros((0, 2)), np.zeros(0), np.zeros(0)
+            return np.zeros((0, 2)), np.zeros(0), np.zeros(0), np.zeros(0)
+        lowest = values.copy()
         values = np.where(outer, -np.inf, values)
         around = np.full(len(values), -np.inf)
         for one, other in (pairs.T, pairs[:, ::-1].T):
             np.maximum.at(around, one, values[other])
+            np.minimum.at(lowest, one, np.where(np.isfinite(lowest[other]), lowest[other], np.inf))
         mesh, on = self.body.field.mesh, points[: len(element)]
         own = np.vstack([on[np.isin(element, self.below)], mesh.nodes[mesh.elements[self.below, 2]]])
         depth, away = (KDTree(places).query(points)[0] for places in (on[~self.mirrors[element]], own))
@@ -220,12 +231,14 @@ class _Search:
             (away <= BESIDE_AT_START * depth) & (values >= around) & np.isfinite(values) & (depth > 0)
         )
         start = start[np.argsort(-values[start])]
-        return points[start], depth[start], values[start]
+        reach = values[start] + RISE * (values[start] - lowest[start])
+        return points[start], depth[start], values[start], reach
 
     def _climb(self, points: Array, step: Array) -> _Ends:
         """Go up from points (k, 2) with first steps (k,).
 
-        At a point that is larger than those around it, the parabola through them gives the next one.
+        At a point that is larger than those around it, the parabola through them gives the next one. Of searches that
+        meet, only the highest one goes on; the value of the others is minus infinity.
         """
         points, step, least = points.copy(), step.copy(), SETTLED * step
         value, inside = np.zeros(len(points)), np.zeros(len(points), bool)
@@ -243,7 +256,9 @@ class _Search:
             better = gained > value[live[top]]
             points[live[top[better]]], value[live[top[better]]] = further[better], gained[better]
             step[live] = np.where(best == 0, np.maximum(step[live] * SHORTER, least[live]), step[live])
-            live = live[~at_top]
+            met = _met(points, value, step)
+            value[met] = -np.inf
+            live = live[~at_top & ~met[live]]
             if not len(live):
                 break
         return _Ends(self._mirrored(points), value, inside)
@@ -275,6 +290,13 @@ class _Search:
         )
         places = reference_element.values(near) @ mesh.nodes[mesh.elements[elements[number]]]
         return float(np.hypot(*(places - point).T).min()), int(number)
+
+
+def _met(points: Array, value: Array, step: Array) -> BoolArray:
+    """Which of the searches at points (k, 2) are nearer to a higher one than both step."""
+    away = np.hypot(*(points[:, None] - points).transpose(2, 0, 1))
+    order = np.argsort(np.argsort(-value, kind="stable"))
+    return ((away < MEET * np.minimum(step[:, None], step)) & (order < order[:, None])).any(axis=1)
 
 
 def _parabola(values: Array) -> Array:

@@ -227,9 +227,7 @@ def penetration_on_path(
         gaps = surface_gaps(body, state, contact, solution)
         nearby = _peaks_within(path, t - near, t + near) if 0 < i < last else None
         found, said = penetration(gaps, body, contact, solution, nearby, infinite)
-        beyond, noticed = linear_theory(
-            body, contact, solution, footprint(contact, solution, infinite=bool(infinite)), state
-        )
+        beyond, noticed = linear_theory(body, contact, solution, footprint(contact, solution, infinite=infinite), state)
         found = found or beyond
         if found is not None and (worst is None or _order(found) > _order(worst)):
             worst, at = found, value

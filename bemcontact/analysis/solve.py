@@ -288,7 +288,7 @@ def assessed(
     with watch.stage("assessment"):
         recomputed = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, recomputed)
-        where, deepest, said = footprint(contact, solution, infinite=bool(prepared.accuracy.infinite)), None, ()
+        where, deepest, said = footprint(contact, solution, infinite=prepared.accuracy.infinite), None, ()
         if certificate.kind is not CertificateKind.NOT_A_SOLUTION:
             if boundary is not None and condensation is not None:
                 gaps = surface_gaps(condensation.body, boundary, contact, solution)

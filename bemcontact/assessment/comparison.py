@@ -161,7 +161,7 @@ class Comparison(Recorded, Tabular):
 
 
 def comparison(
-    contact: CondensedContact, reference: Attempt, attempts: Sequence[Attempt], *, infinite: bool = False
+    contact: CondensedContact, reference: Attempt, attempts: Sequence[Attempt], *, infinite: Sequence[str] = ()
 ) -> Comparison:
     """Assess the solutions of formulations, without trust in a solver, and put them side by side.
 

@@ -342,9 +342,9 @@ def assess(
     weights: Sequence[Weights],
     penalties: tuple[float, ...],
     *,
-    infinite: bool = False,
+    infinite: Sequence[str] = (),
 ) -> Assessment:
-    """Recompute everything of a solution; there is no peak if it is known to be infinite.
+    """Recompute everything of a solution; there is no peak if that of a zone is known to be infinite.
 
     `ProblemError` if the problem does not carry one of the weights.
     """

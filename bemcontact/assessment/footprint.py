@@ -1,8 +1,9 @@
 """Where the bodies touch: intervals of contact, the peak pressure, the resultant."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,18 @@ from bemcontact.serialization import Internal, Leaf, Pair, Record
 OPEN_NODES = 3
 
 
+@dataclass(frozen=True, kw_only=True)
+class Peak(Leaf):
+    """The largest pressure, and where it acts."""
+
+    _called: ClassVar[Words] = {"at": PLACE, "pressure": PEAK}
+
+    pressure: float
+    """Nodal pressure per undeformed length [p]."""
+    at: Pair
+    """Contact point (x, y) [L]; one of them where the pressure is the same all along the contact."""
+
+
 @dataclass(frozen=True, kw_only=True, repr=False)
 class ContactInterval(Leaf):
     """One unbroken stretch of contact along the boundary."""
@@ -26,6 +39,8 @@ class ContactInterval(Leaf):
     _called: ClassVar[Words] = {
         "start and end": ("ends", *PLACE),
         "length": ("width", "half_width", "contact_length", "contact_width", "contact_area", "size"),
+        "force": ("resultant",),
+        "peak": PEAK,
     }
 
     zone: str
@@ -34,6 +49,12 @@ class ContactInterval(Leaf):
     """First end (x, y) in the order of the boundary [L]."""
     end: Pair
     """Last end (x, y) in the order of the boundary [L]."""
+    force: Pair
+    """Force (x, y) on the body of the pressure on this stretch alone, Σ w p n, per thickness [p L]."""
+    moment: float
+    """Moment of this force about the origin, counterclockwise, per thickness [p L²]."""
+    peak: Peak | None
+    """Largest pressure on this stretch; null if that of its zone is infinite."""
     start_arc: Internal[float]
     """Arc position of the first end on the run [L]."""
     end_arc: Internal[float]
@@ -58,18 +79,6 @@ class ContactInterval(Leaf):
     def length(self) -> float:
         """Length along the boundary [L]."""
         return self.end_arc - self.start_arc
-
-
-@dataclass(frozen=True, kw_only=True)
-class Peak(Leaf):
-    """The largest pressure, and where it acts."""
-
-    _called: ClassVar[Words] = {"at": PLACE, "pressure": PEAK}
-
-    pressure: float
-    """Nodal pressure per undeformed length [p]."""
-    at: Pair
-    """Contact point (x, y) [L]; one of them where the pressure is the same all along the contact."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,20 +144,21 @@ def footprint_record(footprint: Footprint) -> FootprintRecord:
     )
 
 
-def footprint(contact: CondensedContact, solution: ContactSolution, *, infinite: bool = False) -> Footprint:
+def footprint(contact: CondensedContact, solution: ContactSolution, *, infinite: Sequence[str] = ()) -> Footprint:
     """Find contact intervals, peak and resultant of a solution of any formulation.
 
     A point touches if p/T > δ/U. The end of an interval is read off the gap, which grows like s^(3/2) beyond it: the
     zero of the line through δ^(2/3) at the first three open points, as long as the gap grows, kept between the last
     point in contact and the first open one. With two open points the line goes through both; with one the end is put
     half-way. Contact up to the end of a run ends at its last point, or at the node beyond it that a condition holds on
-    the rigid surface. There is no peak if it is known to be infinite.
+    the rigid surface. There is no peak if that of a zone is known to be infinite.
     """
+    carried = _Carried(contact, solution.pressure, infinite)
     return Footprint(
         intervals=tuple(
             interval
             for zone, path in _paths(contact, solution)
-            for interval in _intervals(path, contact.zone_names[zone])
+            for interval in _intervals(path, contact.zone_names[zone], carried)
         ),
         peak=None if infinite else _peak(contact, solution.pressure),
         resultant=_resultant(contact, solution.pressure),
@@ -185,6 +195,21 @@ def resting_ends(contact: CondensedContact, solution: ContactSolution) -> tuple[
                 if len(_opened(path, last, step)) > 1 and position in (path.arc[last], path.arc[last + step]):
                     resting.append(_at(path, position))
     return tuple(resting)
+
+
+class _Carried(NamedTuple):
+    """The pressure of contact points (n,), of which stretches of contact carry parts."""
+
+    contact: CondensedContact
+    pressure: Array
+    infinite: Sequence[str]
+
+    def by(self, index: IntArray, zone: str) -> tuple[Pair, float, Peak | None]:
+        """Force, moment and peak of some points of a zone, each of which counts once."""
+        own = np.zeros_like(self.pressure)
+        own[index] = self.pressure[index]
+        whole = _resultant(self.contact, own)
+        return whole.force, whole.moment, None if zone in self.infinite else _peak(self.contact, own)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -249,11 +274,17 @@ def _stretches(path: _Path) -> list[tuple[int, int]]:
     return [(begin, finish) for begin, finish in zip(begins, ends, strict=True) if path.first <= begin < path.last]
 
 
-def _intervals(path: _Path, zone: str) -> list[ContactInterval]:
+def _intervals(path: _Path, zone: str, carried: _Carried) -> list[ContactInterval]:
     """The stretches of contact of a run; a closed run in contact all around is one, from its first point."""
     if path.closed:
-        return [_interval(path, zone, path.arc[path.first], path.arc[path.last])]
-    return [_interval(path, zone, _end(path, begin, -1), _end(path, finish, +1)) for begin, finish in _stretches(path)]
+        return [_interval(path, zone, (path.arc[path.first], path.arc[path.last]), carried.by(path.index, zone))]
+    return [
+        _interval(
+            path, zone, (_end(path, begin, -1), _end(path, finish, +1)),
+            carried.by(path.index[begin : finish + 1], zone),
+        )
+        for begin, finish in _stretches(path)
+    ]  # fmt: skip
 
 
 def _rates(path: _Path, rate: Array) -> list[tuple[float | None, float | None]]:
@@ -263,12 +294,16 @@ def _rates(path: _Path, rate: Array) -> list[tuple[float | None, float | None]]:
     return [(_end_rate(path, rate, begin, -1), _end_rate(path, rate, finish, +1)) for begin, finish in _stretches(path)]
 
 
-def _interval(path: _Path, zone: str, start: float, end: float) -> ContactInterval:
-    """An interval from its arc positions."""
+def _interval(path: _Path, zone: str, ends: Pair, carries: tuple[Pair, float, Peak | None]) -> ContactInterval:
+    """An interval from its arc positions, and what it carries."""
+    (start, end), (force, moment, peak) = ends, carries
     return ContactInterval(
         zone=zone,
         start=_at(path, start),
         end=_at(path, end),
+        force=force,
+        moment=moment,
+        peak=peak,
         start_arc=float(start),
         end_arc=float(end),
         run=path.run,

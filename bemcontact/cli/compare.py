@@ -39,7 +39,7 @@ def compare(
     If a spec has load cases, all of them and all combinations are compared, on one mesh; --case selects one.
 
     FOLDER gets report.html (one file, pictures inside), report.json, figures/ and spec.yaml, and contact.npz, or of
-    load cases zones.csv and points.csv; an earlier report there is replaced.
+    load cases zones.csv, intervals.csv and points.csv; an earlier report there is replaced.
 
     Examples
       bemcontact compare models/cylinder_on_plane.yaml

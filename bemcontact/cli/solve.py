@@ -43,8 +43,9 @@ def solve(
     the spec, errors are not assessed. The exit status is 0 only if the solution of the equations is certified, and the
     accuracy is met.
 
-    FOLDER gets result.html (one page with pictures, to read and to send on), zones.csv, points.csv, stress.csv (along
-    the edges), largest_stresses.csv, result.json, figures/ and spec.yaml; an earlier result there is replaced.
+    FOLDER gets result.html (one page with pictures, to read and to send on), zones.csv, intervals.csv (each stretch of
+    contact), points.csv, stress.csv (along the edges), largest_stresses.csv, result.json, figures/ and spec.yaml; an
+    earlier result there is replaced.
 
     If a spec has load cases, all of them and all combinations are solved; --case selects one.
 

@@ -240,7 +240,7 @@ class ParameterPath(Leaf, Tabular):
         """The state at breakpoint i, or at t."""
         solution = self.path.at(t) if i is None else self.path.breakpoint(i)
         contact = self.path.contact(t)
-        where = footprint(contact, solution, infinite=bool(self.infinite))
+        where = footprint(contact, solution, infinite=self.infinite)
         p = solution.pressure if where.intervals else np.zeros_like(solution.pressure)  # at first touch: round-off
         return PathState(
             value=self.value(t),

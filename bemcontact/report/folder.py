@@ -58,7 +58,15 @@ REPORT = Contents(
     title="report",
     page="report.html",
     numbers="report.json",
-    others=("contact.npz", "zones.csv", "points.csv", "stress.csv", "largest_stresses.csv", "spec.yaml"),
+    others=(
+        "contact.npz",
+        "zones.csv",
+        "intervals.csv",
+        "points.csv",
+        "stress.csv",
+        "largest_stresses.csv",
+        "spec.yaml",
+    ),
     picture=re.compile(
         r"(problem|contacts|(pressure|gap)(-\d+)?|deformed|difference|convergence|history-[a-z0-9-]+)\.svg"
     ),
@@ -69,7 +77,7 @@ RESULT = Contents(
     title="result",
     page="result.html",
     numbers="result.json",
-    others=("zones.csv", "points.csv", "stress.csv", "largest_stresses.csv", "spec.yaml"),
+    others=("zones.csv", "intervals.csv", "points.csv", "stress.csv", "largest_stresses.csv", "spec.yaml"),
     picture=re.compile(r"(problem|contacts|deformed|(contact|pressure|gap)(-\d+)?)\.svg"),
     keys=frozenset({"name", "version", "certified"}),
 )

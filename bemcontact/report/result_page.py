@@ -28,6 +28,7 @@ from bemcontact.report.facts import (
     total_force,
 )
 from bemcontact.report.figures.load_cases import shown_cases
+from bemcontact.report.figures.result import drawn_near
 from bemcontact.report.figures.stress import UNIFORM
 from bemcontact.report.formatting import (
     NEGLIGIBLE,
@@ -42,7 +43,7 @@ from bemcontact.report.formatting import (
 )
 from bemcontact.report.page import picture, template
 from bemcontact.report.verdicts import NOT_LOOKED_AT, case_verdicts, overall, result_verdicts
-from bemcontact.report.zones import by_case, zone_rows
+from bemcontact.report.zones import by_case, interval_rows, zone_rows
 from bemcontact.version import __version__
 
 ZONE_PICTURES = {"contact": "close-up of the contact, {stress}", "pressure": "pressure", "gap": "gap"}
@@ -95,11 +96,13 @@ def render(
         formulations=[] if comparisons is None else [*_formulations(comparisons)],
         cases=[_case(name, result, units) for name, result in cases.items()] if not alone else [],
         zones=[(name, row) for name, result in cases.items() for row in zone_rows(result.to_dict(), units)],
+        intervals=[(name, row) for name, result in cases.items() for row in interval_rows(result.to_dict(), units)],
         envelope=[*_envelope(cases, units)] if not alone else [],
         bars=[*accuracy_rows(alone["accuracy"], units)] if alone else [],
         bars_are=BARS_ARE,
         surfaces=zone_surfaces(first.problem) if first.problem else [],
         notes=[*_notes(cases)],
+        near=sentence_case(drawn_near([*cases.values()])),
         infinite=any(result.accuracy.infinite for result in cases.values()),
         assessed=any(result.accuracy.met is not None for result in cases.values()),
         not_looked_at=NOT_LOOKED_AT,

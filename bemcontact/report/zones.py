@@ -2,6 +2,7 @@
 
 import csv
 import io
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from typing import Any
@@ -22,18 +23,25 @@ from bemcontact.report.facts import (
     pressed_by,
     resolved_size,
 )
-from bemcontact.report.formatting import vector, with_unit, zero_if_negligible
+from bemcontact.report.formatting import number, vector, with_unit, zero_if_negligible
 from bemcontact.report.peak_places import level_zones
 
 ZONE_COLUMNS = (
-    "case", "zone", "interval", "start_x", "start_y", "end_x", "end_y", "end_error", "length", "length_error", "peak",
-    "peak_error", "peak_x", "peak_y", "force_x", "force_y", "force_error", "moment",
+    "case", "zone", "intervals", "length", "peak", "peak_error", "peak_x", "peak_y", "force_x", "force_y",
+    "force_error", "moment",
 )  # fmt: skip
 """Columns of zones.csv."""
+INTERVAL_COLUMNS = (
+    "case", "zone", "interval", "start_x", "start_y", "end_x", "end_y", "end_error", "length", "length_error", "peak",
+    "peak_x", "peak_y", "force_x", "force_y", "moment",
+)  # fmt: skip
+"""Columns of intervals.csv."""
 POINT_COLUMNS = ("case", "zone", "x", "y", "normal_x", "normal_y", "arc", "pressure", "gap", "touching")
 """Columns of points.csv."""
 STRESS_COLUMNS = ("case", "edge", "x", "y", "arc", "hoop", "pressure", "shear", "von_mises")
 """Columns of stress.csv."""
+FIGURES = 4
+"""Figures of a number whose error is not known."""
 LARGEST_COLUMNS = ("case", "stress", "of", "value", "error", "x", "y", "depth", "body", "edge", "none")
 """Columns of largest_stresses.csv."""
 
@@ -64,6 +72,37 @@ def zone_rows(record: JsonObject, units: Units) -> Iterator[dict[str, str]]:
         }
 
 
+def interval_rows(record: JsonObject, units: Units) -> Iterator[dict[str, str]]:
+    """Write each interval of the zones that touch at several: its place, and the peak, force and moment there.
+
+    The error of the force of a zone is not that of its intervals, which are written with four figures.
+    """
+    size, pressed = coordinate_size(record), pressed_by(record)
+    count = Counter(interval["zone"] for interval in record["intervals"])
+    for interval, (zone, place) in zip(record["intervals"], contact_intervals(record, units), strict=True):
+        if count[zone] > 1:
+            moment = zero_if_negligible(interval["moment"], pressed * size)
+            yield {
+                "zone": zone,
+                "contact": place,
+                "peak": _peak_of_interval(record, interval, units),
+                "force": vector(interval["force"], units.line_force, scale=pressed, figures=FIGURES),
+                "moment": with_unit(number(moment, FIGURES), units.line_moment),
+            }
+
+
+def _peak_of_interval(record: JsonObject, interval: JsonObject, units: Units) -> str:
+    """The largest pressure of an interval and its place; with the error of its zone if it may be the largest there."""
+    peak, zone = interval["peak"], interval["zone"]
+    if peak is None:
+        return "infinite in this zone"
+    bar = next((item["bar"] for item in bars_of(record, "peak") if item["zone"] == zone), None)
+    others = (other["peak"]["pressure"] for other in record["intervals"] if other["zone"] == zone and other["peak"])
+    largest = peak["pressure"] >= (1 - (bar or 0.0)) * max(others)
+    value = with_bar(peak["pressure"], bar) if largest else without_digits_beyond(peak["pressure"], bar)
+    return f"{with_unit(value, units.stress)} at {vector(peak['at'], units.length, scale=resolved_size(record))}"
+
+
 def _peak(record: JsonObject, zone: str, units: Units) -> str:
     """The largest pressure of a zone with its error and place, or that it is infinite."""
     bar = next((item for item in bars_of(record, "peak") if item["zone"] == zone), None)
@@ -87,7 +126,7 @@ def _intensities(record: JsonObject, zone: str, units: Units) -> Iterator[str]:
 
 
 def zones_csv(results: Result | CaseResults) -> str:
-    """Write a line for each contact interval, and for each zone without one, of each load case.
+    """Write a line for each zone of each load case: what it carries, all its intervals of contact together.
 
     Errors are absolute, in the unit of the number before them; empty where there is no number.
     """
@@ -100,25 +139,44 @@ def _zone_lines(case: str, result: Result) -> Iterator[list[Any]]:
     """The lines of a result in `zones_csv`."""
     contact, pressure = result.contact, result.solution.pressure
     bars = {(bar.quantity, bar.zone, bar.interval): bar for bar in result.accuracy.bars}
-    for number, zone in enumerate(contact.zone_names):
-        own = np.flatnonzero(contact.zone == number)
-        peak = bars.get(("peak", zone, None))
+    for order, zone in enumerate(contact.zone_names):
+        own = np.flatnonzero(contact.zone == order)
         highest = own[int(np.argmax(pressure[own]))]
         infinite, touches = zone in result.accuracy.infinite, bool(pressure[highest] > 0)
         at = contact.points[highest].tolist() if touches and not infinite else ["", ""]
         value = "" if infinite else float(pressure[highest]) if touches else 0.0
-        force = result.footprint.forces[zone]
-        of_force = _error(bars.get(("force", zone, None)))
-        of_zone = [value, "" if infinite else _error(peak), *at, *force, of_force, result.footprint.moments[zone]]
-        intervals = [item for item in result.footprint.intervals if item.zone == zone]
-        for count, item in enumerate(intervals):
-            ends = [bars.get((quantity, zone, count)) for quantity in ("start", "end")]
-            known = [bar.bar * item.length for bar in ends if bar is not None and bar.bar is not None]
-            end_error = max(known) if len(known) == len(ends) else ""
-            length_error = _error(bars.get(("length", zone, count)))
-            yield [case, zone, count, *item.start, *item.end, end_error, item.length, length_error, *of_zone]
-        if not intervals:
-            yield [case, zone, *[""] * 7, *of_zone]
+        error = "" if infinite else _error(bars.get(("peak", zone, None)))
+        lengths = [item.length for item in result.footprint.intervals if item.zone == zone]
+        yield [
+            case, zone, len(lengths), sum(lengths), value, error, *at, *result.footprint.forces[zone],
+            _error(bars.get(("force", zone, None))), result.footprint.moments[zone],
+        ]  # fmt: skip
+
+
+def intervals_csv(results: Result | CaseResults) -> str:
+    """Write a line for each interval of contact of each load case: its ends, and what it alone carries.
+
+    Errors are absolute, in the unit of the number before them; empty where they are not known. A peak is empty where
+    that of the zone is infinite.
+    """
+    return _written(
+        INTERVAL_COLUMNS, (row for case, result in by_case(results).items() for row in _interval_lines(case, result))
+    )
+
+
+def _interval_lines(case: str, result: Result) -> Iterator[list[Any]]:
+    """The lines of a result in `intervals_csv`."""
+    bars, count = {(bar.quantity, bar.zone, bar.interval): bar for bar in result.accuracy.bars}, Counter[str]()
+    for item in result.footprint.intervals:
+        order = count[item.zone]
+        count[item.zone] += 1
+        ends = [bars.get((quantity, item.zone, order)) for quantity in ("start", "end")]
+        known = [bar.bar * item.length for bar in ends if bar is not None and bar.bar is not None]
+        yield [
+            case, item.zone, order, *item.start, *item.end, max(known) if len(known) == len(ends) else "",
+            item.length, _error(bars.get(("length", item.zone, order))),
+            *(["", "", ""] if item.peak is None else [item.peak.pressure, *item.peak.at]), *item.force, item.moment,
+        ]  # fmt: skip
 
 
 def _error(bar: ErrorBar | None) -> float | str:
@@ -200,7 +258,11 @@ def _largest_lines(case: str, result: Result) -> Iterator[list[Any]]:
 
 def tables_of(results: Result | CaseResults) -> Mapping[str, str]:
     """All tables as CSV, by the names of their files; of a condensed problem there is none of stress."""
-    tables = {"zones.csv": zones_csv(results), "points.csv": points_csv(results)}
+    tables = {
+        "zones.csv": zones_csv(results),
+        "intervals.csv": intervals_csv(results),
+        "points.csv": points_csv(results),
+    }
     if all(result.boundary is not None for result in by_case(results).values()):
         tables["stress.csv"] = stress_csv(results)
         tables["largest_stresses.csv"] = largest_stresses_csv(results)

@@ -7,11 +7,15 @@ import pytest
 from bemcontact.assessment.convergence import convergence
 from bemcontact.assessment.footprint import ContactInterval, Footprint, Peak, Resultant
 
+CARRIES = {"force": (0.0, 1.0), "moment": 0.0, "peak": None}
+"""What the intervals carry; it is not compared."""
+
 
 def print_of(peak: float, *ends: float, zone: str = "foot") -> Footprint:
     """Peak pressure and contact from 0 to each end."""
     intervals = tuple(
-        ContactInterval(zone=zone, start=(0.0, 0.0), end=(end, 0.0), start_arc=0.0, end_arc=end) for end in ends
+        ContactInterval(zone=zone, start=(0.0, 0.0), end=(end, 0.0), start_arc=0.0, end_arc=end, **CARRIES)
+        for end in ends
     )
     resultant = Resultant(force=(0.0, 1.0), moment=0.0, line_point=None)
     return Footprint(
@@ -62,7 +66,13 @@ def test_positions_on_a_closed_run_are_counted_on():
 
     def ring(start: float) -> Footprint:
         interval = ContactInterval(
-            zone="rim", start=(0.0, 0.0), end=(1.0, 0.0), start_arc=start, end_arc=start + 2.0, perimeter=50.0
+            zone="rim",
+            start=(0.0, 0.0),
+            end=(1.0, 0.0),
+            start_arc=start,
+            end_arc=start + 2.0,
+            perimeter=50.0,
+            **CARRIES,
         )
         return dataclasses.replace(print_of(1.0), intervals=(interval,))
 

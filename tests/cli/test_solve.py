@@ -348,7 +348,7 @@ def test_out_writes_a_page_with_the_stress_asked_for(block: Path, tmp_path: Path
     answer = run("solve", block, "--out", place, "--stress", "yy")
     assert answer.exit_code == 0, answer.stderr
     assert {path.name for path in place.iterdir()} == {
-        "result.html", "result.json", "zones.csv", "points.csv", "stress.csv", "largest_stresses.csv",
+        "result.html", "result.json", "zones.csv", "intervals.csv", "points.csv", "stress.csv", "largest_stresses.csv",
         "spec.yaml", "figures",
     }  # fmt: skip
     assert "σyy" in (place / "result.html").read_text(encoding="utf-8")

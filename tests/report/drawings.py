@@ -149,3 +149,22 @@ def leaves() -> Problem:
     short = block((0, 60), (-4, 0), (16, 2, 16, 2))
     bodies = {"long": elastic(long, {**held, "right": {"traction": {"y": -0.01}}}), "short": elastic(short, held)}
     return several(bodies, leaves=["short/top", "long/bottom"])
+
+
+def shaft_in_a_ring_in_a_housing() -> Problem:
+    """A rigid shaft presses an elastic ring down in a rigid housing, which is a square with a round hole."""
+
+    def circle(name: str, radius: float, angles: list[float], elements: int) -> dict:
+        center = [0, 0]
+        return {"name": name, "kind": "arc", "center": center, "radius": radius, "angles": angles, "elements": elements}
+
+    ring = {"outer": [circle("rim", 20, [-90, 270], 32)], "holes": [[circle("bore", 14, [270, -90], 32)]]}
+    square = polygon(below=(-30, -30), right=(30, -30), above=(30, 30), left=(-30, 30))
+    housing = {"outer": square["outer"], "holes": [[circle("seat", 20.001, [270, -90], 8)]]}
+    bodies = {
+        "ring": elastic(ring),
+        "shaft": rigid({"outer": [circle("shaft", 13.999, [-90, 270], 8)]}),
+        "housing": rigid(housing),
+    }
+    drawn = several(bodies, bore=["ring/bore", "shaft/shaft"], seat=["ring/rim", "housing/seat"])
+    return Problem.model_validate({**drawn.to_dict(), "tools": {"shaft": {"zones": "bore", "force": {"y": -5}}}})

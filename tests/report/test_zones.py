@@ -5,10 +5,21 @@ import io
 
 import numpy as np
 import pytest
+from drawings import roller_in_a_groove
 from results import EACH, cases, condensed, punched, rolled
 
+import bemcontact
 from bemcontact.report.contact_words import units_of
-from bemcontact.report.zones import by_case, points_csv, stress_csv, tables_of, zone_rows, zones_csv
+from bemcontact.report.zones import (
+    by_case,
+    interval_rows,
+    intervals_csv,
+    points_csv,
+    stress_csv,
+    tables_of,
+    zone_rows,
+    zones_csv,
+)
 
 
 def read(text: str) -> list[dict[str, str]]:
@@ -17,32 +28,59 @@ def read(text: str) -> list[dict[str, str]]:
 
 @pytest.mark.parametrize("name", EACH)
 def test_zones_have_the_forces_and_moments_that_add_up_to_the_resultant(name: str):
-    """One line for each interval, and for a zone without one; what is of the zone stands in each of its lines."""
+    """One line for each zone, also for one without contact, and for each of its intervals, which carry its force."""
     results = EACH[name]()
-    lines = read(zones_csv(results))
+    lines, parts = read(zones_csv(results)), read(intervals_csv(results))
     for case, result in by_case(results).items():
         own = {line["zone"]: line for line in lines if line["case"] == case}
+        assert len(own) == sum(line["case"] == case for line in lines)
         assert [*own] == [*result.contact.zone_names]
         force = np.sum([[float(line["force_x"]), float(line["force_y"])] for line in own.values()], axis=0)
         where = result.footprint.resultant
         assert force == pytest.approx(where.force, abs=1e-12 * np.hypot(*force))
         moment = sum(float(line["moment"]) for line in own.values())
         assert moment == pytest.approx(where.moment, abs=1e-9 * max(1.0, abs(where.moment)))
-        count = sum(line["case"] == case and line["interval"] != "" for line in lines)
-        assert count == len(result.footprint.intervals)
+        of_case = [line for line in parts if line["case"] == case]
+        assert len(of_case) == len(result.footprint.intervals) == sum(int(line["intervals"]) for line in own.values())
+        for zone, line in own.items():
+            for column in ("length", "force_x", "force_y", "moment"):
+                total = sum(float(part[column]) for part in of_case if part["zone"] == zone)
+                assert total == pytest.approx(float(line[column]), rel=1e-9, abs=1e-12)
+
+
+def test_each_stretch_of_contact_has_the_force_and_the_peak_of_its_own():
+    """A heavy roller in a groove of two faces at a right angle: by symmetry each carries weight / sqrt(2) across it."""
+    result = bemcontact.solve(roller_in_a_groove())
+    (zone,), (left, right) = read(zones_csv(result)), read(intervals_csv(result))
+    weight = 0.02 * np.pi * 10**2
+    assert float(zone["force_y"]) == pytest.approx(weight, rel=1e-3)
+    assert {np.sign(float(left["start_x"])), np.sign(float(right["start_x"]))} == {-1, 1}
+    for line in (left, right):
+        side = -np.sign(float(line["start_x"]))
+        assert (float(line["force_x"]), float(line["force_y"])) == pytest.approx(
+            (side * weight / 2, weight / 2), rel=1e-2
+        )
+        assert float(line["peak"]) == pytest.approx(float(zone["peak"]), rel=1e-2)
+        assert np.sign(float(line["peak_x"])) == -side
+        assert min(float(line["start_x"]), float(line["end_x"])) <= float(line["peak_x"])
+        assert max(float(line["start_x"]), float(line["end_x"])) >= float(line["peak_x"])
+    rows = [*interval_rows(result.to_dict(), units_of(result.contact))]
+    assert [row["zone"] for row in rows] == ["seat", "seat"]
+    assert all(" at (" in row["peak"] for row in rows)
+    assert [*interval_rows(rolled().to_dict(), units_of(rolled().contact))] == []
 
 
 def test_errors_in_the_table_are_those_of_the_error_bars():
     """Absolute ones, in the unit of the number before them; unknown ones and infinite peaks are empty."""
-    (line,) = read(zones_csv(rolled()))
-    for quantity, column in (("peak", "peak"), ("length", "length")):
+    (zone,), (interval,) = read(zones_csv(rolled())), read(intervals_csv(rolled()))
+    for line, quantity, column in ((zone, "peak", "peak"), (interval, "length", "length")):
         bar = rolled().accuracy.bar_of(quantity, "foot")
         assert float(line[column]) == pytest.approx(bar.value, rel=1e-6)  # the bar has it before the polish
         assert float(line[f"{column}_error"]) == pytest.approx(bar.bar * bar.value)
     (infinite, *_) = read(zones_csv(punched()))
     assert infinite["peak"] == infinite["peak_error"] == infinite["peak_x"] == ""
-    (unknown, *_) = read(zones_csv(condensed()))
-    assert unknown["peak_error"] == unknown["length_error"] == ""
+    assert {line["peak"] for line in read(intervals_csv(punched()))} == {""}
+    assert read(zones_csv(condensed()))[0]["peak_error"] == read(intervals_csv(condensed()))[0]["length_error"] == ""
 
 
 def test_points_are_listed_along_the_boundary():
@@ -69,8 +107,8 @@ def test_stress_along_edges_has_the_pressure_of_the_contact():
 
 
 def test_a_condensed_problem_has_no_stress():
-    assert {*tables_of(condensed())} == {"zones.csv", "points.csv"}
-    assert {*tables_of(cases())} == {"zones.csv", "points.csv", "stress.csv", "largest_stresses.csv"}
+    assert {*tables_of(condensed())} == {"zones.csv", "intervals.csv", "points.csv"}
+    assert {*tables_of(cases())} == {"zones.csv", "intervals.csv", "points.csv", "stress.csv", "largest_stresses.csv"}
 
 
 def test_rows_say_in_words_what_a_zone_does():

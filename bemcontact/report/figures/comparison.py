@@ -27,6 +27,7 @@ from bemcontact.report.figures.page import (
     distance_label,
     labeled,
     legend_below,
+    name_axis,
     only_around,
     pieces_of,
     plain,
@@ -103,7 +104,7 @@ def draw_pressures(axes: Axes, level: MeshLevel) -> None:
     else:
         _cut_off(axes, {}, top, unit)
         cut_off(axes, top, infinite)
-    axes.set_ylabel(labeled("pressure", unit) + "\nper undeformed length")
+    name_axis(axes.yaxis, labeled("pressure", unit) + "\nper undeformed length")
     along.finish(axes)
 
 
@@ -119,7 +120,7 @@ def draw_gaps(axes: Axes, level: MeshLevel) -> None:
     answer = contact.initial_gap + level.answer.solution.displacement
     largest = max(float(contact.initial_gap.max()), float(answer.max()), contact.scales.displacement)
     _cut_off(axes, maxima, BEYOND * largest, unit)
-    axes.set_ylabel(labeled("gap", unit))
+    name_axis(axes.yaxis, labeled("gap", unit))
     along.finish(axes)
     widest = max(float(np.abs(contact.initial_gap).max(initial=0.0)), *map(abs, maxima.values()))
     label_closed(axes, widest, contact.scales.displacement)
@@ -202,7 +203,7 @@ class _Along:
         """Name the axis, and the pieces if there are several."""
         whole = sum(len(piece.index) for piece in self.pieces) == self.contact.size
         label = distance_label(self.contact, self.pieces)
-        axes.set_xlabel(label if whole else only_around(label))
+        name_axis(axes.xaxis, label if whole else only_around(label))
         if len(self.pieces) > 1:
             self._name_pieces(axes)
         legend_below(axes)

@@ -24,10 +24,12 @@ from bemcontact.report.figures.page import (
     VERMILION,
     add_path,
     frame_plan,
+    name_axis,
     pieces_of,
     plain,
     short_label,
     without_glyph_warnings,
+    wrapped,
 )
 from bemcontact.report.figures.problem import (
     Displacement,
@@ -39,7 +41,7 @@ from bemcontact.report.figures.problem import (
 )
 from bemcontact.report.figures.stress import fill_with_stress
 from bemcontact.report.figures.surfaces import Surface, surfaces_of
-from bemcontact.report.figures.symbols import Name, draw_arrows, draw_ground, place_names, settle
+from bemcontact.report.figures.symbols import Name, covered_by, draw_arrows, draw_ground, place_names, settle
 from bemcontact.report.formatting import with_unit
 
 VISIBLE = 0.005
@@ -62,6 +64,12 @@ ROOM = 1.5
 """Room for a fan and its number over the length of the fan."""
 OVERHANG = 0.14
 """Length of a rigid surface beyond its contact zone, and beyond the body, over the size of what is shown."""
+HATCH = 0.025
+"""Depth of hatching over the size of what is shown."""
+SAMPLED = 240
+"""Places along a rigid surface beside which its name may stand."""
+SEAM = 1e-6
+"""Distance of the ends of a line over its extent up to which it is closed."""
 MANY_ELEMENTS = 36
 """Number of elements from which their nodes alone show the curves."""
 
@@ -201,11 +209,12 @@ def sketch_contact(
     loops = [loop for own in bodies for loop in own]
     setting = setting or setting_of([result], zone)
     window, size, part = setting.window, setting.size, setting.part
-    fans = [fan for fan in _fans(result, state) if not part or (zone == fan.zone and _seen(fan, window))]
+    every = [fan for fan in _fans(result, state) if not part or zone == fan.zone]
+    fans = [fan for fan in every if not part or _seen(fan, window)]
     reach = size if part else OVERHANG * size
     surfaces = [*surfaces_of(result, problem, reach)]
-    grounds = [draw_ground(axes, it.points, it.normals, 0.025 * size, GREY) for it in surfaces]
-    covered = [framed(ground, it, window, size) for ground, it in zip(grounds, surfaces, strict=True)]
+    grounds = [draw_ground(axes, it.points, it.normals, HATCH * size, GREY) for it in surfaces]
+    covered = [framed(ground.covered, it, window, size) for ground, it in zip(grounds, surfaces, strict=True)]
     symbols = list[Array]()
     if not part:
         displacement = _displacement(state)
@@ -226,20 +235,78 @@ def sketch_contact(
             names.append(_label(fan, tips[-1], text, cut=fan.peak > scale * (1 + LEVEL)))
         elif fan.peak == max(other.peak for other in fans if other.zone == fan.zone):
             names.append(_label(fan, tips[-1], "infinite", cut=True))
-    names += [] if part else body_names(problem, bodies, optional=True)
     beyond = [fan.feet + ROOM * (tip - fan.feet) for fan, tip in zip(fans, tips, strict=True)]
     drawn = np.concatenate([window, *beyond, *([] if part else covered), *symbols])
     frame_plan(axes, drawn, units.length)
+    if not part:
+        names += [*body_names(problem, bodies, optional=True), *_surface_names(axes, problem, surfaces, HATCH * size)]
+    if len(fans) < len(every):
+        name_axis(axes.xaxis, f"{axes.get_xlabel()}\n{len(fans)} of {len(every)} contacts of this zone")
     if stress is not None:
         fill_with_stress(axes, result, stress, window=window if part else None)
 
     def write() -> None:
         with without_glyph_warnings():
-            place_names(axes, names, np.concatenate([*loops, *grounds, *symbols, *map(_inked, fans, tips)]), bodies)
+            inked = [*loops, *covered_by(grounds), *symbols, *map(_inked, fans, tips)]
+            place_names(axes, names, np.concatenate(inked), bodies, grounds)
         for text in axes.texts:
             text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6})
 
     return write
+
+
+def _surface_names(axes: Axes, problem: Problem, surfaces: Sequence[Surface], depth: float) -> Iterator[Name]:
+    """Names of rigid bodies, and of other rigid surfaces by their zones, where there are several things to tell apart.
+
+    They are placed in what is rigid, as far as it is shown, or behind its hatching of a depth.
+    """
+    lines: dict[str, list[Surface]] = {}
+    for surface in surfaces:
+        lines.setdefault(surface.name, []).append(surface)
+    if len(lines) + len(problem.parts) < 3:
+        return
+    low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
+    shares = np.stack(np.meshgrid(*2 * [np.linspace(0.02, 0.98, 25)]), axis=-1).reshape(-1, 2)
+    for name, own in lines.items():
+        along, away = (np.concatenate(parts) for parts in zip(*map(_sampled, own), strict=True))
+        shown = ((along > low) & (along < high)).all(axis=1)
+        along, away = along[shown], away[shown]
+        places, closed = np.zeros((0, 2)), all(_closes(it) for it in own)
+        if closed:
+            corner, end = (side(np.concatenate([it.points for it in own]), axis=0) for side in (np.min, np.max))
+            places = np.maximum(corner, low) + shares * (np.minimum(end, high) - np.maximum(corner, low))
+            solid = np.logical_xor.reduce([Path(it.points).contains_points(places) for it in own])
+            places = places[solid]
+            if len(places) and len(along):
+                places = places[np.argsort(-KDTree(along).query(places)[0], kind="stable")]
+        if not len(along) and not len(places):
+            continue
+        some = np.unique(np.linspace(0, max(len(along) - 1, 0), 16).astype(int)) if len(along) else []
+        behind, before = (along - depth * away)[some], along[some if closed else []]
+        yield Name(
+            text=wrapped(name, 20),
+            color=BLACK,
+            anchors=np.concatenate([places, behind, before]),
+            directions=np.concatenate([np.zeros_like(places), -away[some], away[some if closed else []]]),
+            optional=True,
+        )
+
+
+def _sampled(surface: Surface) -> tuple[Array, Array]:
+    """Evenly spaced points (k, 2) of a line, and its normals there."""
+    s = np.concatenate([[0.0], np.hypot(*np.diff(surface.points, axis=0).T).cumsum()])
+    at = np.linspace(0, s[-1], SAMPLED)
+    points = np.column_stack([np.interp(at, s, surface.points[:, i]) for i in (0, 1)])
+    return points, surface.normals[np.clip(np.searchsorted(s, at), 0, len(s) - 1)]
+
+
+def _closes(surface: Surface) -> bool:
+    """Whether a line goes round something rigid."""
+    ends = surface.points[[0, -1]]
+    if np.hypot(*(ends[1] - ends[0])) > SEAM * np.hypot(*np.ptp(surface.points, axis=0)):
+        return False
+    outward = surface.points - surface.points.mean(axis=0)
+    return surface.body or bool((outward * surface.normals).sum() > 0)
 
 
 def framed(ground: Array, surface: Surface, window: Array, size: float) -> Array:

@@ -77,7 +77,7 @@ def draw_shape(axes: Axes, result: Result, factor: float) -> BoundaryState:
     window = np.array([end(np.concatenate(covered), axis=0) for end in (np.min, np.max)])
     for surface in surfaces:
         ground = draw_ground(axes, surface.points, surface.normals, 0.025 * size, GREY)
-        covered.append(framed(ground, surface, window, size))
+        covered.append(framed(ground.covered, surface, window, size))
     frame_plan(axes, np.concatenate(covered), units_of(result.contact).length)
     return state
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from bemcontact.arrays import Array, IntArray
 from bemcontact.modelling.gap_design.designed_gap import GapDesign
 from bemcontact.report.contact_words import units_of
-from bemcontact.report.figures.page import CYCLE, GREY, labeled, new_page, plain
+from bemcontact.report.figures.page import CYCLE, GREY, labeled, name_axis, new_page, plain
 
 WIDTH = 5.2
 """Inches of a picture on a page."""
@@ -27,7 +27,7 @@ def figures_of_design(design: GapDesign) -> dict[str, Figure]:
     """Make the pictures of the page of a design: "pressure" and "profile"."""
     figures = {name: new_page(WIDTH, 3.4) for name in ("pressure", "profile")}
     draw_relieved_pressure(figures["pressure"].add_subplot(), design)
-    figures["pressure"].axes[0].set_xlabel(_distance(design))
+    name_axis(figures["pressure"].axes[0].xaxis, _distance(design))
     draw_relief(figures["profile"].add_subplot(), design)
     return figures
 
@@ -47,7 +47,7 @@ def draw_relieved_pressure(axes: Axes, design: GapDesign) -> None:
     axes.set_ylim(-0.03 * highest, 1.08 * highest)
     if design.peak_before > highest:
         axes.text(0.98, 0.95, f"up to {design.peak_before:.4g} without", ha="right", va="top", transform=axes.transAxes)
-    axes.set_ylabel(labeled("pressure", units_of(design.before[0].contact).stress))
+    name_axis(axes.yaxis, labeled("pressure", units_of(design.before[0].contact).stress))
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(frameon=False, fontsize=8.5)
 
@@ -57,8 +57,8 @@ def draw_relief(axes: Axes, design: GapDesign) -> None:
     at, arc = _points(design)
     axes.fill_between(arc, design.profile[at], 0.0, color=GREY, alpha=0.25, linewidth=0)
     axes.plot(arc, design.profile[at], color=GREY, marker=".", linewidth=1.5)
-    axes.set_xlabel(_distance(design))
-    axes.set_ylabel(labeled("profile", units_of(design.before[0].contact).length))
+    name_axis(axes.xaxis, _distance(design))
+    name_axis(axes.yaxis, labeled("profile", units_of(design.before[0].contact).length))
     axes.spines[["top", "right"]].set_visible(False)
 
 

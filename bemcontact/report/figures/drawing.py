@@ -25,7 +25,7 @@ from bemcontact.report.figures.deformed import draw_deformed
 from bemcontact.report.figures.design import draw_relief, draw_relieved_pressure
 from bemcontact.report.figures.load_cases import draw_case_pressures
 from bemcontact.report.figures.mesh_study import plan_of
-from bemcontact.report.figures.page import labeled, new_page
+from bemcontact.report.figures.page import labeled, name_axis, new_page
 from bemcontact.report.figures.path import draw_interval_ends, draw_moments, draw_peaks, draw_resultants
 from bemcontact.report.figures.problem import draw_problem
 from bemcontact.report.figures.result import draw_gap, draw_pressure
@@ -97,7 +97,7 @@ def _draw_stress(axes: Axes, result: Result, stress: StressMeasure = StressMeasu
 
 def _draw_ends(axes: Axes, path: ParameterPath, zone: str | None = None) -> None:
     draw_interval_ends(axes, path, zone or path.zones[0])
-    axes.set_xlabel(path.key)
+    name_axis(axes.xaxis, path.key)
 
 
 def _over_key(draw: Callable[[Axes, ParameterPath], None]) -> Draw:
@@ -105,7 +105,7 @@ def _over_key(draw: Callable[[Axes, ParameterPath], None]) -> Draw:
 
     def drawn(axes: Axes, path: ParameterPath) -> None:
         draw(axes, path)
-        axes.set_xlabel(path.key)
+        name_axis(axes.xaxis, path.key)
 
     return drawn
 
@@ -139,8 +139,8 @@ def _draw_contenders(axes: Axes, comparison: Comparison, zone: str | None = None
     if len(pressed):
         length = float(np.ptp(pressed)) or float(np.ptp(arc))
         axes.set_xlim(max(pressed[0] - length, arc[0]), min(pressed[-1] + length, arc[-1]))
-    axes.set_xlabel(labeled(f"distance along {contact.zone_names[int(contact.zone[at[0]])]}", units.length))
-    axes.set_ylabel(labeled("pressure", units.stress))
+    name_axis(axes.xaxis, labeled(f"distance along {contact.zone_names[int(contact.zone[at[0]])]}", units.length))
+    name_axis(axes.yaxis, labeled("pressure", units.stress))
     axes.legend(frameon=False)
 
 

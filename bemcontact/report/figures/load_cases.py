@@ -25,6 +25,7 @@ from bemcontact.report.figures.page import (
     cut_off,
     distance_label,
     labeled,
+    name_axis,
     new_page,
     pieces_of,
     plain,
@@ -34,6 +35,7 @@ from bemcontact.report.figures.page import (
 from bemcontact.report.figures.result import (
     ROW,
     WIDE,
+    drawn_near,
     entitle,
     of_zone,
     panels_of,
@@ -68,6 +70,8 @@ def figure_of_cases(cases: CaseResults, stress: StressMeasure = StressMeasure.VO
     *above, below = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
     for row, zone in enumerate(panels):
         draw_case_pressures(below.add_subplot(len(panels), 1, row + 1), cases, zone)
+    if words := drawn_near([*cases.results.values()]):
+        below.suptitle(words, x=0.01, ha="left", fontsize=10, color=GREY)
     entitle(figure, f"{wrapped(cases.name, 6 * INCHES)}: all load cases", case_verdicts(cases), 9 * INCHES)
     if above:
         draw_case_contacts(places_of(above[0], shown, rows, columns), cases, shown)
@@ -200,8 +204,8 @@ def draw_case_pressures(axes: Axes, cases: CaseResults, zone: str | None = None)
         axes.set_title(short_label(zone, 40), loc="left", fontsize=10)
     axes.axhline(0, color=GREY, linewidth=0.8)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.set_xlabel(distance_label(first.contact, pieces))
-    axes.set_ylabel(labeled("pressure", units_of(first.contact).stress) + "\nper undeformed length")
+    name_axis(axes.xaxis, distance_label(first.contact, pieces))
+    name_axis(axes.yaxis, labeled("pressure", units_of(first.contact).stress) + "\nper undeformed length")
     show_around(axes, pieces, [*results.values()], largest)
     axes.legend(frameon=False, fontsize=8.5, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     infinite = [name for name in cases.infinite if zone is None or zone in results[name].accuracy.infinite]

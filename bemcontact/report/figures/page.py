@@ -1,5 +1,6 @@
 """What all pictures share: colors, pieces of the contact zones, axes with units, and files."""
 
+import re
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.axis import XAxis
+from matplotlib.axis import Axis, XAxis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
@@ -116,6 +117,54 @@ def labeled(quantity: str, unit: str) -> str:
     return f"{quantity} [{plain(unit)}]" if unit else quantity
 
 
+POWER = re.compile(r" \[\$10\^\{-?\d+\}\$\]|(?<=\[)\$10\^\{-?\d+\}\$ ")
+"""A power of ten in the label of an axis: with a unit, or alone."""
+
+
+class PowerInLabel(ScalarFormatter):
+    """Tick labels whose power of ten stands with the unit in the label of the axis, not at the end of the axis.
+
+    Nothing is subtracted from them.
+    """
+
+    def __init__(self) -> None:
+        """Write tick labels as they are."""
+        super().__init__(useOffset=False, useMathText=False)
+
+    def format_ticks(self, values: Any) -> list[str]:
+        """Write tick labels, and their power of ten into the label of each axis that has these ticks."""
+        texts, axis = super().format_ticks(values), self.axis
+        power = int(super().get_offset().partition("e")[2].replace("\N{MINUS SIGN}", "-") or 0)
+        if isinstance(axis, Axis):
+            own = axis.axes
+            shared = own.get_shared_x_axes() if isinstance(axis, XAxis) else own.get_shared_y_axes()
+            for axes in shared.get_siblings(own):
+                label = (axes.xaxis if isinstance(axis, XAxis) else axes.yaxis).label
+                label.set_text(with_power(label.get_text(), power))
+        return texts
+
+    def get_offset(self) -> str:
+        """Nothing is written at the end of the axis."""
+        return ""
+
+
+def with_power(label: str, power: int) -> str:
+    """Write a power of ten into the first line of a label, before its unit; an empty label stays empty."""
+    first, *others = POWER.sub("", label).split("\n")
+    if power and first:
+        ten = f"$10^{{{power}}}$"
+        quantity, bracket, unit = first.rpartition("[")
+        first = f"{quantity}[{ten} {unit}" if bracket and unit.endswith("]") else f"{first} [{ten}]"
+    return "\n".join([first, *others])
+
+
+def name_axis(axis: Axis, label: str) -> None:
+    """Label an axis; a power of ten of its ticks will stand with the unit. Ticks of another kind stay as they are."""
+    axis.set_label_text(label)
+    if type(axis.get_major_formatter()) is ScalarFormatter:
+        axis.set_major_formatter(PowerInLabel())
+
+
 LETTER = 0.1
 """Inches of a digit of a tick label."""
 
@@ -161,9 +210,8 @@ def frame_plan(axes: Axes, drawn: Array, unit: str, margin: float = 0.06) -> Non
     axes.set_aspect("equal")
     for axis, extent in zip((axes.xaxis, axes.yaxis), high - low, strict=True):
         axis.set_major_locator(RoundTicks(max(2, round(6 * min(1.0, 1.5 * extent / longest)))))
-        axis.set_major_formatter(ScalarFormatter(useOffset=False))
-    axes.set_xlabel(labeled("x", unit))
-    axes.set_ylabel(labeled("y", unit))
+    name_axis(axes.xaxis, labeled("x", unit))
+    name_axis(axes.yaxis, labeled("y", unit))
     axes.spines[["top", "right"]].set_visible(False)
 
 
@@ -187,9 +235,13 @@ def ceiling(contact: CondensedContact, pressure: Array, infinite: Sequence[str])
 
 def cut_off(axes: Axes, top: float, zones: Sequence[str]) -> None:
     """End the frame at a pressure, and write above it that the pressure of zones is infinite."""
-    where = ", ".join(short_label(zone, 24) for zone in zones)
     axes.set_ylim(-0.05 * top, top)
-    axes.set_title(f"infinite in {where}: cut off", loc="right", pad=16, fontsize=8.5, color=BLACK)
+    axes.set_title(cut_words(zones), loc="right", pad=16, fontsize=8.5, color=BLACK)
+
+
+def cut_words(zones: Sequence[str]) -> str:
+    """Write that the pressure of zones is infinite, and cut off."""
+    return f"infinite in {', '.join(short_label(zone, 24) for zone in zones)}: cut off"
 
 
 AROUND = "only around the contact"

@@ -21,6 +21,7 @@ from bemcontact.report.figures.page import (
     Piece,
     ceiling,
     labeled,
+    name_axis,
     new_page,
     pieces_of,
     plain,
@@ -55,7 +56,7 @@ def figure_of_path(path: ParameterPath) -> Figure:
         draw_interval_ends(axes, path, zone)
     for axes in (peaks, forces, *ends):
         axes.spines[["top", "right"]].set_visible(False)
-    ends[-1].set_xlabel(short_label(path.key, 60))
+    name_axis(ends[-1].xaxis, short_label(path.key, 60))
     of_it = [*path_verdicts(path)]
     at = [*(f"at {number(value)}: " for value in (path.start, path.end)), *[""] * (len(of_it) - 3)]
     lines = [where + in_short([verdict]) for where, verdict in zip(at, of_it[1:], strict=True)]
@@ -84,7 +85,7 @@ def _panel(figures: dict[str, Figure], name: str, path: ParameterPath) -> Axes:
     figures[name] = new_page(WIDTH, 3.2)
     axes = figures[name].add_subplot()
     axes.spines[["top", "right"]].set_visible(False)
-    axes.set_xlabel(short_label(path.key, 60))
+    name_axis(axes.xaxis, short_label(path.key, 60))
     return axes
 
 
@@ -105,6 +106,7 @@ def draw_states(figure: Figure, path: ParameterPath) -> None:
             axes.fill_between(piece.arc, pressure[piece.index], 0.0, color=color, alpha=SHADE, linewidth=0)
             axes.plot(piece.arc, pressure[piece.index], color=color, linewidth=1.4, linestyle=piece.dashes)
         axes.set_title(f"at {number(path.value(t))}", fontsize=9, loc="left")
+        axes.ticklabel_format(style="plain", useOffset=False)  # a power of ten would stand on the title
         axes.spines[["top", "right"]].set_visible(False)
     panels[0].set_xlim(*_around_contact(pieces, states))
     for axes, top in zip(panels, tops, strict=True):
@@ -136,7 +138,7 @@ def draw_peaks(axes: Axes, path: ParameterPath) -> None:
     Known errors at breakpoints are bars. Marks are hollow where the error is larger than asked, or not known.
     """
     begin_at_left(axes, path)
-    axes.set_ylabel(labeled("peak pressure", units_of(path.contact).stress))
+    name_axis(axes.yaxis, labeled("peak pressure", units_of(path.contact).stress))
     if path.infinite:
         axes.text(
             0.5, 0.5, f"infinite in {', '.join(path.infinite)}", transform=axes.transAxes, ha="center", color=BLACK
@@ -168,7 +170,7 @@ def draw_resultants(axes: Axes, path: ParameterPath) -> None:
             if bar.value is not None and bar.bar is not None
         )  # fmt: skip
         _draw_errors(axes, known, CYCLE[order % len(CYCLE)])
-    axes.set_ylabel(labeled("resultant", units_of(path.contact).line_force))
+    name_axis(axes.yaxis, labeled("resultant", units_of(path.contact).line_force))
     axes.set_ylim(bottom=0)
 
 
@@ -176,7 +178,7 @@ def draw_moments(axes: Axes, path: ParameterPath) -> None:
     """Draw the moment about the origin of the force of each contact on the body over the parameter."""
     lever = float(np.abs(path.contact.points).max())
     _draw_by_zone(axes, path, [[*state.moments] for state in path.states], lever * _pressing(path))
-    axes.set_ylabel(labeled("moment about (0, 0)", units_of(path.contact).line_moment))
+    name_axis(axes.yaxis, labeled("moment about (0, 0)", units_of(path.contact).line_moment))
 
 
 def _pressing(path: ParameterPath) -> float:
@@ -215,7 +217,7 @@ def draw_interval_ends(axes: Axes, path: ParameterPath, zone: str) -> None:
             marked = [(value, y) for value, y in zip(values.tolist(), edge, strict=True) if value in stops]
             axes.plot(*np.reshape(marked, (-1, 2)).T, color=color, linestyle="none", marker="o", markersize=2.2)
     _draw_errors(axes, _errors_of_ends(path, zone), color)
-    axes.set_ylabel(labeled(f"distance along {short_label(zone, 16)}", units_of(path.contact).length))
+    name_axis(axes.yaxis, labeled(f"distance along {short_label(zone, 16)}", units_of(path.contact).length))
 
 
 def _errors_of_ends(path: ParameterPath, zone: str) -> Iterator[tuple[float, float, float]]:

@@ -39,8 +39,8 @@ def pictures_of(results: Result | CaseResults, stress: StressMeasure = StressMea
     """Make the pictures for the page of a result or of all load cases, by name.
 
     Names are "problem", "contact" or "contacts", and "deformed" (if a body is known), and for each zone "pressure-1",
-    and of a result "gap-1", and "contact-1" if it needs a close-up. Of many zones those with the largest forces have
-    such pictures, and "forces" shows all of a result.
+    and of a result "gap-1", and "contact-1" if it needs a close-up. Of many zones those that `drawn_near` names
+    have such pictures, and "forces" shows all of a result.
     """
     first = results if isinstance(results, Result) else next(iter(results.results.values()))
     figures, near = dict[str, Figure](), [] if isinstance(results, CaseResults) else close_ups(results)

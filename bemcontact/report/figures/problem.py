@@ -45,7 +45,9 @@ from bemcontact.report.figures.page import (
     wrapped,
 )
 from bemcontact.report.figures.symbols import (
+    Ground,
     Name,
+    covered_by,
     draw_arrows,
     draw_ground,
     draw_rollers,
@@ -103,7 +105,8 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     _fill_body(axes, problem)
     _draw_mesh(axes, problem, mesh)
     outline = [edge.points(np.linspace(0, 1, 60)) for edge in problem.edges]
-    symbols = [*draw_supports(axes, problem), *draw_loads(axes, problem), *_draw_surfaces(axes, problem, mesh)]
+    surfaces = [*_draw_surfaces(axes, problem, mesh)]
+    symbols = [*draw_supports(axes, problem), *draw_loads(axes, problem), *covered_by(surfaces)]
     symbols += draw_weights(axes, problem) if problem.several else []
     tools = [*draw_tools(axes, problem)]
     drawn = np.concatenate([*outline, *symbols, *(covered for covered, _ in tools)])
@@ -113,10 +116,11 @@ def draw_problem(axes: Axes, problem: Problem, mesh: Mesh) -> None:
     crowded = len(problem.parts) > MANY
     names = [*(name for _, name in tools), *_draw_rotation(axes, problem)]
     edges = [_name(problem, edge, i, crowded) for i, part in enumerate(problem.parts) for edge in part.edges]
-    names = [*body_names(problem, polygons_of(problem)), *names, *edges] if crowded else [*edges, *names]
+    names = [*body_names(problem, polygons_of(problem)), *names, *edges] if crowded else [*names, *edges]
     settle(axes)
     with without_glyph_warnings():
-        taken = place_names(axes, names, drawn, polygons_of(problem))
+        grounds = [item for item in surfaces if isinstance(item, Ground)]
+        taken = place_names(axes, names, drawn, polygons_of(problem), grounds)
         if not problem.several and (weight := _weights(problem)[0]).any():
             place_arrow(axes, "$g$", weight, drawn, taken)
 
@@ -261,7 +265,7 @@ def draw_supports(axes: Axes, problem: Problem, displacement: Displacement = np.
         if len(held.given) == 2:
             fractions = np.linspace(0, 1, 61)
             points = edge.points(fractions)
-            yield draw_ground(axes, points + displacement(points), -edge.normals(fractions), 0.025 * size, BLUE)
+            yield draw_ground(axes, points + displacement(points), -edge.normals(fractions), 0.025 * size, BLUE).covered
             continue
         fractions = _spread(edge, size, 8)
         points, normals = edge.points(fractions), edge.normals(fractions)
@@ -326,7 +330,7 @@ def _draw_rotation(axes: Axes, problem: Problem) -> Iterator[Name]:
     yield Name(text=sense, color=BLACK, anchors=np.tile(spin.center, (8, 1)), directions=around)
 
 
-def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
+def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Ground | Array]:
     """Draw the rigid surfaces opposite the body with their normals."""
     size, drawn = problem.size, set[str]()
     for name, zone in problem.zones.items():
@@ -345,7 +349,7 @@ def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
     yield from _draw_contours(axes, problem, mesh)
 
 
-def _draw_contours(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Array]:
+def _draw_contours(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Ground | Array]:
     """Draw each edge opposite a deflected contour again, displaced by the gap."""
     size = problem.size
     for name, (feet, normals) in contours(problem, mesh).items():

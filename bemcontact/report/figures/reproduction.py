@@ -18,6 +18,7 @@ from bemcontact.report.figures.page import (
     VERMILION,
     labeled,
     legend_below,
+    name_axis,
     new_page,
 )
 from bemcontact.report.formatting import number
@@ -83,8 +84,8 @@ def draw_against(axes: Axes, item: PaperStudy) -> None:
     for known in item.meshes[-1].level.expected:
         singles = _draw_reference(axes, known, item, singles)
     units = item.problem.units
-    axes.set_xlabel(labeled(item.paper.symbol, item.coordinate_unit))
-    axes.set_ylabel(labeled("pressure", units.stress) + "\nper undeformed length")
+    name_axis(axes.xaxis, labeled(item.paper.symbol, item.coordinate_unit))
+    name_axis(axes.yaxis, labeled("pressure", units.stress) + "\nper undeformed length")
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
     axes.set_ylim(bottom=0, top=ABOVE * max(float(np.nanmax(line.get_ydata())) for line in axes.lines))  # pyright: ignore
 

@@ -24,9 +24,10 @@ from bemcontact.report.figures.page import (
     Piece,
     RoundTicks,
     ceiling,
-    cut_off,
+    cut_words,
     distance_label,
     labeled,
+    name_axis,
     new_page,
     only_around,
     pieces_of,
@@ -55,6 +56,8 @@ NARROW = 0.15
 """Extent of the contact over that of its zone below which only the part around it is shown."""
 WIDTHS = 1.0
 """Widths of the contact that are shown to either side of it, where it is small beside the zone."""
+SHORT = 26
+"""Letters of a line of a legend below which two stand side by side."""
 FEW = 40
 """Points of a piece up to which their dots have full size."""
 CLOSED = 1e-9
@@ -65,7 +68,8 @@ def figure_of_result(result: Result, stress: StressMeasure = StressMeasure.VON_M
     """Compose a page with contact, stress on the deformed shape, where the body is known, and pressure and gap.
 
     Each of a few zones has a row of its own, with a close-up if its contact is small beside the body. Of many zones
-    those with the largest forces have one; bars show the largest pressure and the force of each.
+    those with the largest forces and with the largest pressure have one; bars show the largest pressure and the force
+    of each, and a line says which are drawn.
     """
     state, zones = result.boundary, result.contact.zone_names
     rows, near = panels_of([result]), close_ups(result)
@@ -89,16 +93,18 @@ def figure_of_result(result: Result, stress: StressMeasure = StressMeasure.VON_M
     if bars:
         peaks = figure.add_subplot(grid[plans, :3])
         draw_zone_bars(peaks, result, "peak")
-        draw_zone_bars(figure.add_subplot(grid[plans, 3:], sharey=peaks), result, "force")
+        forces = figure.add_subplot(grid[plans, 3:], sharey=peaks)
+        draw_zone_bars(forces, result, "force")
+        name_axis(forces.xaxis, f"{forces.get_xlabel()}\n{drawn_near([result])}".rstrip())
     for row, (zone, name) in enumerate(zip(rows, names, strict=True), plans + len(below)):
-        if columns == 3 and name is not None and name in near:
+        if name is not None and name in near:
             closer = figure.add_subplot(grid[row, :2])
             closer.set_title(f"{short_label(name, 30)}: close-up", loc="left", fontsize=10)
             writers.append(sketch_contact(closer, result, name, stress=stress))
-        thirds = (slice(2, 4), slice(4, 6)) if columns == 3 else (slice(0, 3), slice(3, 6))
-        pressure = figure.add_subplot(grid[row, thirds[0]])
+        left, right = (slice(2, 4), slice(4, 6)) if name in near else (slice(0, 3), slice(3, 6))
+        pressure = figure.add_subplot(grid[row, left])
         draw_pressure(pressure, result, zone)
-        draw_gap(figure.add_subplot(grid[row, thirds[1]], sharex=pressure), result, zone)
+        draw_gap(figure.add_subplot(grid[row, right], sharex=pressure), result, zone)
     heights += [*below, *len(rows) * [ROW]]
     grid.set_height_ratios(heights)
     figure.set_size_inches(inches, sum(heights) + 0.8)
@@ -111,13 +117,36 @@ def figure_of_result(result: Result, stress: StressMeasure = StressMeasure.VON_M
 
 
 def panels_of(results: Sequence[Result]) -> list[str | None]:
-    """Zones that have panels of their own: each of a few, of many those with the largest forces; None for all."""
+    """Zones that have panels of their own: each of a few, of many the `largest_zones`; None for all."""
     zones = results[0].contact.zone_names
     if len(zones) <= PANELS:
         return [*zones] if len(zones) > 1 else [None]
+    return [*largest_zones(results)] or [None]
+
+
+def largest_zones(results: Sequence[Result]) -> list[str]:
+    """Zones with the largest forces of all results, and that with the largest pressure; none without contact."""
+    zones, peaks = results[0].contact.zone_names, dict[str, float]()
     forces = {zone: max(float(np.hypot(*result.footprint.forces[zone])) for result in results) for zone in zones}
+    for order, zone in enumerate(zones):
+        infinite = any(zone in result.accuracy.infinite for result in results)
+        own = results[0].contact.zone == order
+        peaks[zone] = np.inf if infinite else max(float(it.solution.pressure[own].max()) for it in results)
     most = sorted((zone for zone in zones if forces[zone] > 0), key=lambda zone: -forces[zone])[:LARGEST]
-    return [zone for zone in zones if zone in most] or [None]
+    highest = max(zones, key=lambda zone: (peaks[zone], zone in most))
+    return [zone for zone in zones if zone in most or (most and zone == highest)]
+
+
+def drawn_near(results: Sequence[Result]) -> str:
+    """Write which of many contacts have panels of their own; nothing if all have."""
+    zones, shown = results[0].contact.zone_names, panels_of(results)
+    if len(zones) <= PANELS or None in shown:
+        return ""
+    forces = [max(float(np.hypot(*result.footprint.forces[zone])) for result in results) for zone in zones]
+    why = "the others do not touch"
+    if len(shown) < sum(force > 0 for force in forces):
+        why = f"the {LARGEST} with the largest forces" + ", and that with the largest pressure" * (len(shown) > LARGEST)
+    return f"drawn near: {len(shown)} of {len(zones)} contacts, {why}"
 
 
 def _fit(plans: Sequence[Axes], side: GridSpecBase | None, inches: float, least: float) -> tuple[list[float], float]:
@@ -153,11 +182,14 @@ def draw_pressure(axes: Axes, result: Result, zone: str | None = None) -> None:
     """
     contact, infinite = result.contact, [name for name in result.accuracy.infinite if zone in (None, name)]
     pressure = np.where(of_zone(contact, zone), result.solution.pressure, 0.0)
-    _draw_along(axes, result, pressure, zone)
-    axes.set_ylabel(labeled("pressure", units_of(contact).stress) + "\nper undeformed length")
+    top = ceiling(contact, pressure, infinite)
+    _draw_along(axes, result, pressure, zone, "" if top is None else cut_words(infinite))
+    name_axis(axes.yaxis, labeled("pressure", units_of(contact).stress) + "\nper undeformed length")
     axes.set_ylim(top=1.18 * float(pressure.max(initial=0.0)) or 1.0)
-    if (top := ceiling(contact, pressure, infinite)) is not None:
-        cut_off(axes, top, infinite)
+    if top is not None:
+        axes.set_ylim(-0.05 * top, top)
+    if not pressure.any():
+        axes.text(0.5, 0.5, "no contact pressure", transform=axes.transAxes, ha="center", color=BLACK)
     if infinite or not pressure.any():
         return
     highest = np.flatnonzero(pressure >= (1 - LEVEL) * pressure.max())
@@ -178,7 +210,7 @@ def draw_gap(axes: Axes, result: Result, zone: str | None = None) -> None:
     gap = np.where(np.abs(gap := _gap(result)) <= CLOSED * scale, 0.0, gap)
     gap = np.where(of_zone(result.contact, zone), gap, 0.0)
     _draw_along(axes, result, gap, zone)
-    axes.set_ylabel(labeled("gap", units_of(result.contact).length))
+    name_axis(axes.yaxis, labeled("gap", units_of(result.contact).length))
     label_closed(axes, float(np.abs(gap).max(initial=0.0)), scale)
 
 
@@ -194,10 +226,11 @@ def of_zone(contact: CondensedContact, zone: str | None) -> BoolArray:
     return np.isin(contact.zone, [i for i, name in enumerate(contact.zone_names) if zone in (None, name)])
 
 
-def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None) -> None:
+def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None, note: str = "") -> None:
     """Draw values (n,) along each piece of a zone, with dots: full where there is contact, empty where it is open.
 
-    The later of two equal curves is the thinner one and interrupted, so that both are seen.
+    The later of two equal curves is the thinner one and interrupted, so that both are seen. Above the axes stand the
+    name of the zone, the note, and below them what the curves are.
     """
     contact, touching = result.contact, result.touching
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
@@ -221,16 +254,22 @@ def _draw_along(axes: Axes, result: Result, values: Array, zone: str | None) -> 
     colors = {contact.zone_names[int(contact.zone[piece.index[0]])]: piece.color for piece in pieces}
     for name, ends in intervals_on(pieces, result):
         axes.hlines(0, *ends, color=colors[name], linewidth=3 + 3 * list(colors)[::-1].index(name), zorder=2)
-    axes.set_xlabel(distance_label(contact, pieces))
+    name_axis(axes.xaxis, distance_label(contact, pieces))
     axes.spines[["top", "right"]].set_visible(False)
     axes.xaxis.set_major_locator(RoundTicks(7))
     show_around(axes, pieces, [result], values)
-    if zone is not None:
-        axes.set_title(
-            short_label(zone, 40), loc="left", fontsize=10, pad=16 if zone in result.accuracy.infinite else 6
-        )
-    if len(pieces) > 1 and touching[of_zone(contact, zone)].any():
-        axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, fontsize=9)
+    heading = "\n".join(filter(None, ["" if zone is None else short_label(zone, 40), note]))
+    handles, labels = axes.get_legend_handles_labels()
+    if len(pieces) == 1 or not handles:
+        axes.set_title(heading, loc="left", fontsize=10)
+        return
+    if zone is not None:  # which is named above
+        labels = [label.replace(f"{short_label(zone, 24)} (", "from (") for label in labels]
+    axes.legend(
+        handles, labels, title=heading or None, title_fontsize=10, alignment="left", frameon=False, fontsize=9,
+        loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2 if max(map(len, labels)) < SHORT else 1,
+        borderpad=0, borderaxespad=0.6,
+    )  # fmt: skip
 
 
 def intervals_on(pieces: Sequence[Piece], result: Result) -> Iterator[tuple[str, tuple[float, float]]]:
@@ -262,7 +301,7 @@ def show_around(axes: Axes, pieces: Sequence[Piece], results: Sequence[Result], 
         [np.interp(np.linspace(*window, 200), piece.arc, values[piece.index], left=0, right=0) for piece in pieces]
     )
     axes.set(xlim=window, ylim=(-0.05 * shown.max() or None, 1.1 * shown.max() or None))
-    axes.set_xlabel(only_around(axes.get_xlabel()))
+    name_axis(axes.xaxis, only_around(axes.get_xlabel()))
 
 
 def _gap(result: Result) -> Array:

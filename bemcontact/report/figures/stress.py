@@ -15,7 +15,7 @@ from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.contact.stress import PointKind, TriangulatedBody
 from bemcontact.options import StressMeasure
 from bemcontact.report.contact_words import units_of
-from bemcontact.report.figures.page import BLACK, labeled
+from bemcontact.report.figures.page import BLACK, PowerInLabel, labeled
 from bemcontact.report.figures.problem import polygons_of
 from bemcontact.report.figures.surfaces import bent
 
@@ -159,7 +159,7 @@ def add_bar(places: Sequence[Axes], drawn: TriContourSet, result: Result, scale:
     """Add the scale of colors beside axes; it is that of all of them."""
     figure = places[0].get_figure(root=False)
     assert figure is not None
-    bar = figure.colorbar(drawn, ax=[*places], fraction=0.045, pad=0.02, shrink=0.9)
+    bar = figure.colorbar(drawn, ax=[*places], fraction=0.045, pad=0.02, shrink=0.9, format=PowerInLabel())
     bar.set_label(labeled(scale.measure.words, units_of(result.contact).stress), fontsize=9)
     bar.ax.tick_params(labelsize=8.5)
     bar.outline.set_visible(False)  # pyright: ignore[reportCallIssue]

@@ -15,6 +15,7 @@ from bemcontact.report.figures.page import (
     VERMILION,
     labeled,
     legend_below,
+    name_axis,
     new_page,
     plain,
     short_label,
@@ -79,8 +80,8 @@ def draw_output(axes: Axes, study: StudyTable, column: str, number: int) -> None
         axes.set_xticks(places, [short_label(text, 18) for text in ticks])
     else:
         axes.locator_params(axis="x", nbins=6)
-    axes.set_xlabel(short_label(axis.name, 60))
-    axes.set_ylabel(labeled(short_label(column, 40), unit_of_output(column, study.units)))
+    name_axis(axes.xaxis, short_label(axis.name, 60))
+    name_axis(axes.yaxis, labeled(short_label(column, 40), unit_of_output(column, study.units)))
     legend_below(axes)
 
 

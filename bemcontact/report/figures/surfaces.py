@@ -26,10 +26,14 @@ DISTORTED = 0.1
 
 
 class Surface(NamedTuple):
-    """Line (j, 2) of a rigid surface with unit normals (j, 2), and whether it is a whole body."""
+    """Line (j, 2) of a rigid surface with unit normals (j, 2), its name, and whether it is a whole body.
+
+    The name is that of the rigid body, or of the zone.
+    """
 
     points: Array
     normals: Array
+    name: str
     body: bool = False
 
 
@@ -62,9 +66,10 @@ def surfaces_of(
                 x, y, angle = factor * moves[tool]
                 line = line + (x, y) + angle * (line - points[tool])[:, ::-1] * (-1, 1)
             if isinstance(zone.surface, BodySurface) and _bends(result, number, factor):
-                yield Surface(line + bent(result, zone.surface.body, line, factor), normals, body)
+                yield Surface(line + bent(result, zone.surface.body, line, factor), normals, zone.surface.body, body)
             else:
-                yield Surface(line - _shift(result.contact, nearest, factor - 1), normals, body)
+                named = zone.surface.body if isinstance(zone.surface, BodySurface) else name
+                yield Surface(line - _shift(result.contact, nearest, factor - 1), normals, named, body)
 
 
 def bent(result: Result, body: str, points: Array, factor: float) -> Array:
@@ -173,4 +178,4 @@ def ground_of(result: Result, zone: int, near: float, factor: float = 1.0) -> It
     for piece in pieces_of(contact, result.touching):
         for stretch in np.split(piece.index, np.flatnonzero(np.diff(shown[piece.index])) + 1):
             if contact.zone[stretch[0]] == zone and shown[stretch[0]] and len(stretch) > 1:
-                yield Surface(feet[stretch], contact.normals[stretch])
+                yield Surface(feet[stretch], contact.normals[stretch], contact.zone_names[zone])

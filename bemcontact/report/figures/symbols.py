@@ -11,7 +11,7 @@ from matplotlib.patches import Polygon
 from matplotlib.path import Path
 from matplotlib.transforms import Bbox
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.report.figures.page import add_path, without_glyph_warnings
 
 SYMBOL_REACH = 18.0
@@ -33,14 +33,18 @@ class Box(NamedTuple):
     top: float
 
 
+INSET = 5.0
+"""Distance of the end of a line inside the border of a name, in pixels of the page."""
 FAR = 30.0
 """Distance of a name from its anchor, in pixels of the page, from which a line leads to it."""
 SHARES = np.linspace(0.05, 1.0, 20)
 """Shares of the way from an anchor to a name at which it must not be in another body."""
 BLOCKED = 1000.0
 """What a way through another body adds to its length, in pixels of the page."""
-CROSSED = 60
+CROSSED = 20
 """Number of drawn points from which free space is better than a place across the outline of a body."""
+ON_LINE = 4.0
+"""Distance before an anchor, in pixels of the page, at which the way to its name begins."""
 FREE_PLACES = 12
 """Number of nearest places in free space that are compared for a name."""
 COVERED = 1000.0
@@ -99,10 +103,27 @@ def joined(curves: Array) -> list[Array]:
     return [np.concatenate([run[0, :1], run[:, 1:].reshape(-1, 2)]) for run in runs]
 
 
-def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, color: str) -> Array:
+class Ground(NamedTuple):
+    """A rigid line as it is drawn: strokes of hatching from roots (k, 2) on it to tips (k, 2) on its rigid side."""
+
+    roots: Array
+    tips: Array
+
+    @property
+    def covered(self) -> Array:
+        """Points (2 k, 2) of what the drawing covers."""
+        return np.concatenate([self.roots, self.tips])
+
+
+def covered_by(items: Sequence[Ground | Array]) -> list[Array]:
+    """Points (k, 2) that each of some drawn things covers."""
+    return [item.covered if isinstance(item, Ground) else item for item in items]
+
+
+def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, color: str) -> Ground:
     """Draw a rigid line (k, 2) and hatching of a depth on the side away from its unit normals (k, 2).
 
-    On a small circle the hatching is less deep, and no spiral. Return points (k, 2) of what the drawing covers.
+    On a small circle the hatching is less deep, and no spiral.
     """
     s = np.concatenate([[0.0], np.hypot(*np.diff(points, axis=0).T).cumsum()])
     if np.hypot(*(points[-1] - points[0])) < s[-1] / 2:
@@ -114,7 +135,7 @@ def draw_ground(axes: Axes, points: Array, normals: Array, depth: float, color: 
     strokes = Path(np.stack([roots, tips], axis=1).reshape(-1, 2), len(roots) * [Path.MOVETO, Path.LINETO])
     add_path(axes, strokes, facecolor="none", edgecolor=color, linewidth=0.7, zorder=1)
     axes.plot(*points.T, color=color, linewidth=1.3, zorder=1)
-    return np.concatenate([roots, tips])
+    return Ground(roots, tips)
 
 
 def draw_rollers(axes: Axes, points: Array, away: Array, size: float, color: str) -> Array:
@@ -143,7 +164,7 @@ def draw_arrows(axes: Axes, tails: Array, vectors: Array, color: str) -> Array:
     axes.quiver(
         *tails.T, *vectors.T, angles="xy", scale_units="xy", scale=1, color=color, width=0.0028, headwidth=5, zorder=5
     )
-    return np.concatenate([tails + share * vectors for share in np.linspace(0, 1, 13)])
+    return np.concatenate([tails + share * vectors for share in np.linspace(0, 1, 31)])
 
 
 def settle(axes: Axes) -> None:
@@ -154,9 +175,16 @@ def settle(axes: Axes) -> None:
             page.draw_without_rendering()
 
 
-def place_names(axes: Axes, names: Sequence[Name], drawn: Array, bodies: Sequence[Sequence[Array]]) -> list[Box]:
+def place_names(
+    axes: Axes,
+    names: Sequence[Name],
+    drawn: Array,
+    bodies: Sequence[Sequence[Array]],
+    grounds: Sequence[Ground] = (),
+) -> list[Box]:
     """Write names in order where they cover least, on their own side of the closed polygons (j, 2) of each body.
 
+    Where there is room elsewhere they stand on no hatching, and not behind the rigid line that is before their anchor.
     `drawn` are points (k, 2) of the drawing. The limits of the axes must be set, and the page be settled. Names keep
     off a legend and the labels of the axes. A thin line leads to one that stands far from its anchor. Return the boxes
     of what is taken.
@@ -164,6 +192,7 @@ def place_names(axes: Axes, names: Sequence[Name], drawn: Array, bodies: Sequenc
     to_page, frame = axes.transData, _room(axes)
     ink = to_page.transform(drawn)
     walls = [[Path(to_page.transform(loop)) for loop in loops] for loops in bodies]
+    rigid = [Ground(to_page.transform(it.roots), to_page.transform(it.tips)) for it in grounds]
     beside = [axes.xaxis.label, axes.yaxis.label, axes.get_legend()]
     taken = [Box(*item.get_window_extent().extents) for item in beside if item is not None]
     for name in names:
@@ -171,14 +200,14 @@ def place_names(axes: Axes, names: Sequence[Name], drawn: Array, bodies: Sequenc
         text.set_in_layout(False)  # or the next layout would move what it was placed beside
         extent = text.get_window_extent()
         size = (extent.width + 10, extent.height + 4)
-        chosen = _place(name, size, to_page.transform(name.anchors), frame, taken, ink, walls)
+        chosen = _place(name, size, to_page.transform(name.anchors), frame, taken, ink, walls, rigid)
         if chosen is None:
             text.remove()
             continue
         taken.append(centered(chosen, size))
         text.set_position(_to_data(axes, chosen))
         named = to_page.transform(name.anchors if name.named is None else name.named)
-        ends = np.clip(named, chosen - np.array(size) / 2 + 5, chosen + np.array(size) / 2 - 5)
+        ends = _line_ends(named, chosen, size)
         at = int(np.argmin(np.hypot(*(ends - named).T)))
         anchor, end = named[at], ends[at]
         if name.directions.any() and np.hypot(*(end - anchor)) > FAR:
@@ -196,6 +225,7 @@ def _place(
     taken: Sequence[Box],
     ink: Array,
     walls: Sequence[Sequence[Path]],
+    grounds: Sequence[Ground],
 ) -> Array | None:
     """Center (2,) of a name on the page: beside its anchor, else in free space, else across other names.
 
@@ -210,10 +240,17 @@ def _place(
     def free(centers: Array) -> BoolArray:
         return np.array([not any(overlap(centered(center, size), box) for box in taken) for center in centers], bool)
 
+    def clear(anchors: Array, centers: Array) -> BoolArray:
+        ends = _line_ends(anchors, centers, size)
+        behind = _behind(grounds, anchors, centers) | _behind(grounds, anchors, ends)
+        return ~_hatched(grounds, centers, size) & ~behind & ~_leads_through(taken, anchors, ends)
+
     held = _holds(frame, centers, size)
     side = held.copy()
     side[held] = _on_side(walls, anchors[held], centers[held], name.body)
     room = side & free(centers)
+    room[room] = clear(anchors[room], centers[room])
+    beside = room.copy()
     if name.optional:
         room &= (np.abs(centers - anchors) - np.array(size) / 2).max(axis=1) < FAR
     room[room] = ~_crossed(lines, centers[room], size)
@@ -221,16 +258,18 @@ def _place(
         return least(centers[room])
     if name.optional:
         return None
-    if name.body is None and (near := side & free(centers)).any():
-        center = least(centers[near])
+    if name.body is None and beside.any():
+        center = least(centers[beside])
         if crowd(centered(center, size), [], ink) < CROSSED:  # it may stand across the outline of a body
             return center
     grid = _grid(frame, size)
     grid = grid[free(grid) & ~_inside(walls, grid).any(axis=0)]
     grid = grid[~_crossed(lines, grid, size)]
     distances = np.hypot(*(grid[:, None] - anchors).transpose(2, 0, 1))
+    nearest = anchors[_nearest_anchor(anchors, grid, size)]
+    distances[~clear(nearest, grid)] += BLOCKED
     if name.body is not None:  # a line through another body would seem to lead to that
-        ways = anchors[distances.argmin(axis=1)] + SHARES[:, None, None] * (grid - anchors[distances.argmin(axis=1)])
+        ways = nearest + SHARES[:, None, None] * (grid - nearest)
         others = [loops for body, loops in enumerate(walls) if body != name.body]
         blocked = _inside(others, ways.reshape(-1, 2)).any(axis=0).reshape(ways.shape[:2])
         distances += BLOCKED * np.any(blocked, axis=0, keepdims=True).T
@@ -308,6 +347,60 @@ def _crossed(walls: Sequence[Path], centers: Array, size: tuple[float, float]) -
     """Whether a wall goes through a text of this size at each center (c, 2)."""
     boxes = [Bbox(np.reshape(centered(center, size), (2, 2))) for center in centers]
     return np.array([any(wall.intersects_bbox(box, filled=False) for wall in walls) for box in boxes], bool)
+
+
+def _line_ends(anchors: Array, centers: Array, size: tuple[float, float]) -> Array:
+    """Where the line from each anchor (c, 2) to a text of this size at each center (c, 2) ends."""
+    half = np.array(size) / 2 - INSET
+    return np.clip(anchors, centers - half, centers + half)
+
+
+def _nearest_anchor(anchors: Array, centers: Array, size: tuple[float, float]) -> IntArray:
+    """Number (c,) of the anchor (a, 2) that is nearest to a text of this size at each center (c, 2)."""
+    half = np.array(size) / 2 - INSET
+    away = np.maximum(np.abs(centers[:, None] - anchors) - half, 0.0)
+    return np.hypot(away[..., 0], away[..., 1]).argmin(axis=1)
+
+
+def _leads_through(taken: Sequence[Box], anchors: Array, ends: Array) -> BoolArray:
+    """Whether a line from each anchor (c, 2) to its end (c, 2), if one is drawn, goes through another name."""
+    way = anchors + SHARES[:, None, None] * (ends - anchors)
+    through = np.zeros(len(ends), bool)
+    for box in taken:
+        through |= ((way > box[:2]) & (way < box[2:])).all(axis=2).any(axis=0)
+    return through & (np.hypot(*(ends - anchors).T) > FAR)
+
+
+def _hatched(grounds: Sequence[Ground], centers: Array, size: tuple[float, float]) -> BoolArray:
+    """Whether a text of this size at each center (c, 2) stands on a rigid line or on its hatching."""
+    zigzags = [Path(np.stack([it.roots, it.tips, it.roots], axis=1).reshape(-1, 2)) for it in grounds]
+    return _crossed(zigzags, centers, size)
+
+
+def _behind(grounds: Sequence[Ground], anchors: Array, centers: Array) -> BoolArray:
+    """Whether the way from each anchor (c, 2) to its center (c, 2) goes through a rigid line to its rigid side.
+
+    An anchor may be on the line, so a way begins a little before it.
+    """
+    behind, way = np.zeros(len(centers), bool), centers - anchors
+    length = np.hypot(*way.T)[:, None]
+    start = anchors - ON_LINE * way / np.where(length > 0, length, 1.0)
+    way = centers - start
+    for roots, tips in grounds:
+        piece, away = np.diff(roots, axis=0), (tips - roots)[:-1]
+        into = away + away[:, ::-1] * (-1, 1)  # strokes are turned by 45 degrees
+        offset = roots[:-1] - start[:, None]
+        cross = _cross(way[:, None], piece)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            along, across = _cross(offset, piece) / cross, _cross(offset, way[:, None]) / cross
+        through = (along >= 0) & (along <= 1) & (across >= 0) & (across <= 1) & (way @ into.T > 0)
+        behind |= through.any(axis=1) & (length[:, 0] > 0)
+    return behind
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Component of the cross product of vectors (..., 2) across the plane."""
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 def _inside(walls: Sequence[Sequence[Path]], points: Array) -> BoolArray:

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from bemcontact.analysis.result import Result
 from bemcontact.report.bars import with_bar
 from bemcontact.report.contact_words import units_of
-from bemcontact.report.figures.page import BLACK, GREY, VERMILION, labeled, plain, short_label
+from bemcontact.report.figures.page import BLACK, GREY, VERMILION, labeled, name_axis, plain, short_label
 from bemcontact.report.formatting import with_unit
 
 ROOM = 1.45
@@ -41,7 +41,7 @@ def draw_zone_bars(axes: Axes, result: Result, quantity: Literal["peak", "force"
     axes.set_yticks(rows, [short_label(zone, 24) for zone in closed])
     axes.set_ylim(len(closed) - 0.4, -0.6)
     axes.set_xlim(0, ROOM * max(lengths, default=0.0) or 1.0)
-    axes.set_xlabel(labeled("largest pressure" if quantity == "peak" else "force", unit))
+    name_axis(axes.xaxis, labeled("largest pressure" if quantity == "peak" else "force", unit))
     axes.spines[["top", "right"]].set_visible(False)
     left_open = [short_label(zone, 24) for zone in contact.zone_names if zone not in closed]
     if left_open and quantity == "peak":

@@ -17,6 +17,7 @@ from drawings import (
     outlines,
     roller_in_a_groove,
     seal_in_a_groove,
+    shaft_in_a_ring_in_a_housing,
     strokes,
 )
 from matplotlib.axes import Axes
@@ -31,7 +32,7 @@ from bemcontact import spec
 from bemcontact.analysis import solve as analysis
 from bemcontact.options import StressMeasure
 from bemcontact.report import figures
-from bemcontact.report.figures.page import BLACK, BODIES, GREY, VERMILION
+from bemcontact.report.figures.page import BLACK, BODIES, GREY, VERMILION, new_page
 from bemcontact.report.figures.surfaces import THROUGH, TURN, reach_through
 
 MODELS = Path(__file__).parents[3] / "models"
@@ -106,7 +107,7 @@ def test_punch_ends_where_the_boundary_beside_it_lies_in_its_face():
 def test_peak_of_each_zone_is_written_with_its_unit(name: str, zones: int):
     result = solved(name)
     contact, pressure = result.contact, result.solution.pressure
-    texts = [text.get_text().split(",")[0].split() for text in drawn(result).texts if text.get_text() != "$g$"]
+    texts = [text.get_text().split(",")[0].split() for text in drawn(result).texts if text.get_text()[0].isdigit()]
     peaks = [pressure[contact.zone == zone].max() for zone in range(zones)]
     assert [float(value) for value, _ in texts] == pytest.approx(peaks, rel=1e-4)  # five figures
     assert {unit for _, unit in texts} == {"MPa"}
@@ -369,3 +370,25 @@ def test_bodies_have_their_names_and_colors():
 def test_weight_of_a_body_is_drawn():
     axes = drawn(in_a_groove())
     assert "$g$" in [text.get_text() for text in axes.texts]
+
+
+def test_what_is_rigid_has_its_name_where_there_are_several_things():
+    """A floor, a wall and a lid are told apart by their zones; a roller on one plane has nothing to be told from."""
+    axes = new_page(6, 6).add_subplot()
+    figures.draw_contact(axes, analysis.solve(seal_in_a_groove()))
+    places = {text.get_text(): text.get_position() for text in axes.texts}
+    assert {"floor", "wall", "lid"} <= set(places)
+    assert places["floor"][1] < -2 < 2 < places["lid"][1]
+    assert places["wall"][0] < -2
+    axes = new_page(6, 6).add_subplot()
+    figures.draw_contact(axes, solved("gallery/hertz_small"))
+    assert not any(name in text.get_text() for name in ("rim", "plane") for text in axes.texts)
+
+
+@pytest.mark.slow
+def test_a_rigid_body_has_its_name_in_it():
+    axes = new_page(6, 6).add_subplot()
+    result = analysis.solve(shaft_in_a_ring_in_a_housing())
+    figures.draw_contact(axes, result)
+    away = {text.get_text(): np.hypot(*text.get_position()) for text in axes.texts}
+    assert away["shaft"] < 14 < away["ring"] < 20 < away["housing"]

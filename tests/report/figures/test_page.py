@@ -1,5 +1,6 @@
 """Pages of all pictures: their files, sizes, colors, and a page written twice is the same."""
 
+import re
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -21,7 +22,7 @@ from bemcontact.bem import mesh
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problems import Problem
 from bemcontact.report import figures
-from bemcontact.report.figures.page import RoundTicks, distance_label, legend_below, new_page, pieces_of
+from bemcontact.report.figures.page import RoundTicks, distance_label, legend_below, name_axis, new_page, pieces_of
 
 
 @settings(deadline=None)
@@ -124,6 +125,29 @@ def test_a_legend_below_is_below_the_label_of_the_axis(label: str):
     legend = axes.get_legend()
     assert legend is not None
     assert legend.get_window_extent().y1 <= axes.xaxis.label.get_window_extent().y0
+
+
+@pytest.mark.parametrize("label", ["gap [mm]", "gap", "gap [mm]\nper length", "gap of [a] [mm]"])
+@pytest.mark.parametrize(("low", "high"), [(0.0, 3.5e-5), (44.95, 44.96), (0.0, 7e8), (12345.6, 12345.7), (0.0, 7.0)])
+def test_a_power_of_ten_stands_with_the_unit_and_not_on_the_title(low: float, high: float, label: str):
+    """Nothing is at the ends of the axes; what is written, times the power, is where it stands."""
+    figure = new_page(5.0, 3.0)
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    lower.set(xlim=(low, high), ylim=(low, high))
+    for axis in (upper.xaxis, lower.xaxis, lower.yaxis):
+        name_axis(axis, label)
+    for _ in range(2):
+        figure.draw_without_rendering()
+    for axis in (lower.xaxis, lower.yaxis):
+        assert axis.get_offset_text().get_text() == ""
+        written = axis.get_label_text()
+        power = re.search(r"\$10\^\{(-?\d+)\}\$", written)
+        assert written.replace(power[0], "").replace("[ ", "[").removesuffix(" []") == label if power else label
+        ten = 10.0 ** int(power[1]) if power else 1.0
+        for tick in axis.get_major_ticks():
+            text = tick.label1.get_text().replace("\N{MINUS SIGN}", "-")
+            assert float(text) * ten == pytest.approx(tick.get_loc(), abs=1e-3 * (high - low))
+    assert upper.get_xlabel() == lower.get_xlabel()
 
 
 @pytest.mark.parametrize(("low", "high"), [(0.0, 7.0), (0.058985, 0.059012), (-3.6e-7, 8.2e-7), (123450.0, 123457.0)])

@@ -53,6 +53,27 @@ def test_conditions_are_written_at_their_edges():
     assert told["hole"] == []
 
 
+def test_no_name_stands_on_a_rigid_surface_or_its_hatching():
+    """Names of edges in contact stand in the body: behind the floor and the wall they would name these."""
+    problem = block_in_a_corner()
+    figure = figures.figure_of_problem(problem, mesh.build(problem))
+    figure.draw_without_rendering()
+    axes = only_axes(figure)
+    strokes_drawn = [
+        np.asarray(patch.get_path().vertices).reshape(-1, 2, 2)
+        for patch in axes.patches
+        if to_hex(patch.get_edgecolor()) == GREY
+    ]
+    hatching = axes.transData.transform(np.linspace(*np.concatenate(strokes_drawn).swapaxes(0, 1), 9).reshape(-1, 2))
+    assert len(strokes_drawn) == 2
+    for text in axes.texts:
+        box = text.get_window_extent()
+        assert not ((hatching > box.min) & (hatching < box.max)).all(axis=1).any(), text.get_text()
+    for text in axes.texts:
+        if "may touch" in text.get_text():
+            assert min(text.get_position()) > 0
+
+
 def test_springs_are_drawn_outside_the_body_with_their_stiffness():
     """Across the edge and along it, eight of each at most, on the outer side of the edge."""
     stiff = {"normal": 50.0, "tangent": 10.0, "x": 2.0}

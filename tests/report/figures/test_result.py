@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 from functools import cache
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
-from drawings import block_in_a_corner, leaves
+from drawings import block_in_a_corner, leaves, roller_in_a_groove
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mesh_studies import punch
@@ -18,10 +19,13 @@ from bemcontact import spec
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
+from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problems import Problem, Units
-from bemcontact.report import figures
+from bemcontact.report import figures, result_page
 from bemcontact.report.facts import peak_of
 from bemcontact.report.figures.load_cases import shown_cases
+from bemcontact.report.figures.page import new_page
+from bemcontact.report.figures.result import drawn_near, panels_of
 from bemcontact.report.verdicts import case_verdicts, in_short
 
 MODELS = Path(__file__).parents[3] / "models"
@@ -154,6 +158,32 @@ def test_zones_with_equal_pressures_are_both_seen():
     legend = axes.get_legend()
     assert legend is not None
     assert legend.get_window_extent().y0 >= axes.get_window_extent().y1
+
+
+def test_what_curves_are_stands_between_the_name_of_the_zone_and_the_axes():
+    """The roller touches both sides of the groove, which are one zone: two curves, named by where they begin."""
+    result = analysis.solve(roller_in_a_groove())
+    for draw in (figures.draw_pressure, figures.draw_gap):
+        page = new_page(5.4, 3.6)
+        axes = page.add_subplot()
+        draw(axes, result, "seat")
+        page.draw_without_rendering()
+        legend = axes.get_legend()
+        assert legend is not None
+        assert legend.get_title().get_text() == "seat"
+        texts = [legend.get_title(), *legend.get_texts()]
+        assert all(text.get_text().startswith("from (") for text in texts[1:])
+        boxes = [text.get_window_extent() for text in texts]
+        assert all(not one.overlaps(other) for one, other in combinations(boxes, 2))
+        assert all(box.y0 >= axes.get_window_extent().y1 for box in boxes)
+        assert all(box.x1 <= page.bbox.x1 for box in boxes)
+        assert axes.get_title(loc="left") == ""
+
+
+def test_a_close_up_says_how_many_contacts_of_its_zone_it_leaves_out():
+    axes = new_page(5.4, 4.2).add_subplot()
+    figures.draw_contact(axes, analysis.solve(roller_in_a_groove()), "seat")
+    assert axes.get_xlabel() == "x\n1 of 2 contacts of this zone"
 
 
 def test_result_of_a_condensed_problem_has_no_shape():
@@ -313,8 +343,32 @@ def test_bars_show_each_of_many_contacts_that_is_closed():
     left_open = [name for name in force if name not in closed]
     assert peaks.get_title(loc="left").startswith(f"no contact: {left_open[0]}, ")
     panels = [axes.get_title(loc="left") for axes in page.axes if axes.get_ylabel().startswith("pressure")]
-    assert len(panels) == min(3, len(closed))
-    assert min(force[name] for name in panels) >= sorted(force.values())[-3] * (1 - 1e-9)
+    most = sorted(closed, key=lambda name: -force[name])[:3]
+    contact, pressure = result.contact, result.solution.pressure
+    highest = contact.zone_names[int(contact.zone[pressure.argmax()])]
+    assert [*panels] == [name for name in force if name in (*most, highest)]
+    assert forces.get_xlabel().endswith(drawn_near([result]))
+    assert drawn_near([result]).startswith(f"drawn near: {len(panels)} of {len(force)} contacts, ")
+
+
+@pytest.mark.parametrize("forces", [[5, 4, 3, 2, 1], [5, 4, 0, 0, 0]])
+def test_contacts_that_are_not_drawn_near_are_told(forces: list[float]):
+    """Of five contacts the fifth is narrow: its force is the least, and its pressure the largest."""
+    widths = np.array([1.0, 1.0, 1.0, 1.0, 0.01])
+    contact = CondensedContact.from_compliance(np.eye(5), -np.array(forces) / widths, weights=widths)
+    zones = tuple(f"pad {number}" for number in range(1, 6))
+    result = bemcontact.solve(
+        replace(contact, zone=np.arange(5), run=np.arange(5), run_length=np.full(5, np.inf), zone_names=zones)
+    )
+    shown = panels_of([result])
+    if forces[-1]:
+        assert shown == ["pad 1", "pad 2", "pad 3", "pad 5"]
+        assert drawn_near([result]).endswith("the 3 with the largest forces, and that with the largest pressure")
+    else:
+        assert shown == ["pad 1", "pad 2"]
+        assert drawn_near([result]) == "drawn near: 2 of 5 contacts, the others do not touch"
+    page = " ".join(result_page.render(result, {}, None).split())
+    assert drawn_near([result])[1:] in page
 
 
 def test_pictures_of_a_long_body_are_aligned():

@@ -2,9 +2,23 @@
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bemcontact.report.figures.symbols import COVERED, Box, centered, crowd, draw_ground, least_crowded, overlap
+from bemcontact.report.figures.page import new_page
+from bemcontact.report.figures.symbols import (
+    COVERED,
+    Box,
+    Ground,
+    Name,
+    centered,
+    crowd,
+    draw_ground,
+    least_crowded,
+    overlap,
+    place_names,
+    settle,
+)
 
 NOTHING = np.zeros((0, 2))
 
@@ -33,7 +47,7 @@ def test_the_first_free_place_wins():
 def test_ground_is_hatched_on_the_side_away_from_the_normals():
     axes = Figure().add_subplot()
     points, up = np.array([[0.0, 0.0], [10.0, 0.0]]), np.array([[0.0, 1.0], [0.0, 1.0]])
-    covered = draw_ground(axes, points, up, 1.0, "black")
+    covered = draw_ground(axes, points, up, 1.0, "black").covered
     assert covered[:, 1].max() == 0
     assert -1 <= covered[:, 1].min() < 0
     (hatching,) = axes.patches
@@ -42,6 +56,58 @@ def test_ground_is_hatched_on_the_side_away_from_the_normals():
     assert np.ptp(hatches[:, 0, 0]) > 9
     assert (hatches[:, 1, 1] < 0).all()
     assert (hatches[:, 0, 1] == 0).all()
+
+
+def floor(axes: Axes, height: float = 0.0) -> Ground:
+    """A rigid floor at a height, all along axes from 0 to 10."""
+    points, up = np.array([[0.0, height], [10.0, height]]), np.array([[0.0, 1.0], [0.0, 1.0]])
+    return draw_ground(axes, points, up, 0.3, "black")
+
+
+@pytest.mark.parametrize("held_up", [0.0, 0.01])
+def test_a_name_stands_before_the_rigid_line_that_its_anchor_touches(held_up: float):
+    """Both sides are as near and as free; the one behind the line would name what is rigid."""
+    axes = new_page(5.0, 5.0).add_subplot()
+    axes.set(xlim=(0, 10), ylim=(-5, 5))
+    ground = floor(axes)
+    settle(axes)
+    anchors, directions = np.tile([5.0, held_up], (2, 1)), np.array([[0.0, -1.0], [0.0, 1.0]])
+    up_first, down_first = (
+        Name(text="foot", color="black", anchors=anchors, directions=order) for order in (directions[::-1], directions)
+    )
+    for name in (up_first, down_first):
+        place_names(axes, [name], np.zeros((0, 2)), [], [ground])
+    place_names(axes, [down_first], np.zeros((0, 2)), [])  # nothing is known of the line
+    assert [text.get_position()[1] > 0 for text in axes.texts] == [True, True, False]
+
+
+def test_no_name_stands_on_hatching():
+    """Two floors, so near to each other that the places beside the anchor are on the hatching of the upper one."""
+    axes = new_page(5.0, 5.0).add_subplot()
+    axes.set(xlim=(0, 10), ylim=(-5, 5))
+    grounds = [floor(axes), floor(axes, 0.7)]
+    settle(axes)
+    name = Name(text="foot", color="black", anchors=np.array([[5.0, 0.0]]), directions=np.array([[0.0, 1.0]]))
+    place_names(axes, [name], np.concatenate([it.covered for it in grounds]), [], grounds)
+    box = axes.texts[0].get_window_extent()
+    for ground in grounds:
+        assert not any(box.contains(*axes.transData.transform(point)) for point in ground.covered)
+
+
+def test_no_line_to_a_name_goes_through_another_name():
+    """The first name takes the only way up; the second one, far from its anchor, is led to around it."""
+    axes = new_page(5.0, 5.0).add_subplot()
+    axes.set(xlim=(0, 10), ylim=(0, 10))
+    body = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 2.0], [0.0, 2.0], [0.0, 0.0]])
+    settle(axes)
+    at, up = np.array([[5.0, 2.0]]), np.array([[0.0, 1.0]])
+    names = [Name(text="first name", color=color, anchors=at, directions=up) for color in ("red", "blue", "green")]
+    place_names(axes, names, body, [[body]])
+    for line in axes.lines:
+        (own,) = [text for text in axes.texts if text.get_color() == line.get_color()]
+        way = axes.transData.transform(np.linspace(*np.asarray(line.get_xydata()), 50))
+        others = [text.get_window_extent() for text in axes.texts if text is not own]
+        assert not any(box.contains(*point) for box in others for point in way)
 
 
 def test_the_least_crowded_place_is_that_of_all_points():
