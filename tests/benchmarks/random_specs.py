@@ -141,9 +141,9 @@ def block(draw: Draw) -> Spec:
             points = [[-w, 0], [corner, 0], [w, rounded(-drop)]]
             zones = {FLOOR: {**bottom, "surface": {"kind": "polyline", "points": points}}}
         case 2:
-            first, last = draw.number(-0.45, -0.05) * w, draw.number(0.05, 0.45) * w
+            first, last = draw.number(-0.45, -0.15) * w, draw.number(0.15, 0.45) * w
             ends = rounded(first), rounded(last)
-            points = [[-w, -w], [ends[0], -w], [ends[0], 0], [ends[1], 0], [ends[1], -w], [w, -w]]
+            points = [[ends[0], -w], [ends[0], 0], [ends[1], 0], [ends[1], -w]]
             zones = {FLOOR: {**bottom, "surface": {"kind": "polyline", "points": points}}}
         case _:
             places = sorted(draw.sample([-0.4, -0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.4], draw.choice([2, 2, 3])))
@@ -161,11 +161,11 @@ def corner(draw: Draw) -> Spec:
     w, h, E = draw.number(10, 60), draw.number(10, 60), draw.material()
     p, q = (rounded(draw.number(1e-4, 2e-3) * E["young_modulus"]) for _ in range(2))
     edges = rectangle(w, h)
-    if draw.chance(0.5):
-        edges.append({"name": "round", "fillet": draw.number(0.05, 0.3) * min(w, h)})
-    zones: Spec = {FLOOR: {"edges": ["bottom"], "surface": plane(0, 0)}}
+    rounds = ["round"] if draw.chance(0.5) else []
+    edges += [{"name": name, "fillet": rounded(draw.number(0.05, 0.3) * min(w, h))} for name in rounds]
+    zones: Spec = {FLOOR: {"edges": ["bottom", *rounds], "surface": plane(0, 0)}}
     lean = draw.choice([0.0, 0.0, draw.number(-0.02, 0.02)])
-    zones["wall"] = {"edges": ["left"], "surface": plane(rounded(-w / 2, 6), h / 2, lean)}
+    zones["wall"] = {"edges": ["left", *rounds], "surface": plane(rounded(-w / 2, 6), h / 2, lean)}
     conditions = {"top": {"pressure": p}, "right": {"pressure": q}}
     return stated("corner", material=E, boundary={"outer": edges}, conditions=conditions, contact_zones=zones,
                   loads=volume_loads(draw))  # fmt: skip
@@ -224,9 +224,8 @@ def ring(draw: Draw) -> Spec:
         {"name": "below", "kind": "arc", "center": [0, 0], "start": [-b, 0], "end": [b, 0]},
     ]
     load = rounded(-draw.number(1e-5, 1e-3) * E["young_modulus"])
-    conditions = {"below": {"traction": {"x": draw.choice([0, 0, load / 2]), "y": load}}}
-    if gap > 0:
-        conditions["below"]["traction"]["x"] = 0
+    aside = 0 if gap > 0 else draw.choice([0, load / 2])
+    conditions: Spec = {edge: {"traction": {"x": aside, "y": load}} for edge in ("above", "below")}
     return stated("ring", material=E, boundary={"outer": outer, "holes": [bore(a)]}, conditions=conditions,
                   contact_zones={"pin": {"edges": ["bore"], "surface": pin}}, loads=volume_loads(draw))  # fmt: skip
 
@@ -235,17 +234,15 @@ def ring(draw: Draw) -> Spec:
 def lip(draw: Draw) -> Spec:
     """A clamped strip with a round nose that is pressed on a plane, a rod or a floor with a corner."""
     length, h, E = draw.number(10, 60), draw.number(1, 6), draw.material(5, 1e5)
-    r = h * draw.number(0.3, 1.5)
-    x = length - 2 * r
+    r = rounded(h * draw.number(0.3, 1.5))
+    x = round(length - 2 * r, 3)
     corners = [(0, 0), (x - r, 0), (x + r, 0), (length, 0), (length, h), (0, h)]
     edges = polygon(corners, "under nose beyond tip top clamp")
-    edges[1] = {**edges[1], "kind": "arc", "center": [x, 0]}
-    edges[1] |= {key: [rounded(v, 6) for v in edges[1][key]] for key in ("center", "start", "end")}
+    edges[1] |= {"kind": "arc", "center": [x, 0]}
     deep = -rounded(r - length * draw.number(1e-4, 3e-3), 6)
-    middle = edges[1]["center"][0]
     surface = draw.choice([
-        plane(0, deep), circle(middle, rounded(deep - 3 * r, 6), rounded(3 * r, 6)),
-        {"kind": "polyline", "points": [[0, deep], [middle, deep], [2 * length, deep - draw.number(0, 1)]]},
+        plane(0, deep), circle(x, rounded(deep - 3 * r, 6), rounded(3 * r, 6)),
+        {"kind": "polyline", "points": [[0, deep], [x, deep], [2 * length, deep - draw.number(0, 1)]]},
     ])  # fmt: skip
     conditions: Spec = {"clamp": {"fixed": True}}
     if draw.chance(0.3):
@@ -297,7 +294,7 @@ def held_block(draw: Draw, w: float, h: float, E: Spec, y: float = 0.0) -> Spec:
     return {"material": E, "boundary": {"outer": rectangle(w, h, 0, rounded(y - h, 6))}, "conditions": conditions}
 
 
-def pressed_block(draw: Draw, w: float, h: float, E: Spec, y: float, load: float, x: float = 0.0) -> Spec:
+def pressed_block(w: float, h: float, E: Spec, y: float, load: float, x: float = 0.0) -> Spec:
     """A block above a height under a pressure, whose left side slides."""
     conditions = {"top": {"pressure": rounded(load / w)}, "left": {"displacement": {"x": 0}}}
     return {"material": E, "boundary": {"outer": rectangle(w, h, x, y)}, "conditions": conditions}
@@ -332,29 +329,45 @@ def rolled(draw: Draw) -> Spec:
     """A roller on a block, under its weight, a pressed block or a plate; or two of them between blocks."""
     r, E = draw.number(2, 20), draw.material()
     stiff = {**E, "young_modulus": rounded(E["young_modulus"] * draw.choice([1, draw.number(1, 20)]))}
-    w = r * draw.number(4, 12)
+    w = rounded(r * draw.number(4, 12))
     load = draw.number(1e-5, 1e-3) * E["young_modulus"] * r
-    parts = {"base": held_block(draw, w, r * draw.number(1, 6), E)}
+    h = rounded(r * draw.number(1, 6))
+    parts = {"base": held_block(draw, w, h, E)}
     parts["roller"] = {"material": stiff, "boundary": {"outer": disk(r, 0, r)}}
-    contacts, more = {"under": {"between": ["roller/rim", "base/top"]}}, {}
+    contacts, more = {"under": {"between": ["roller", "base"]}}, {}
     match draw.randrange(4):
         case 0:
             parts["roller"]["loads"] = {"gravity": weight(load, pi * r * r)}
         case 1:
-            parts["upper"] = pressed_block(draw, w, r * draw.number(1, 4), E, 2 * r, load)
-            contacts["over"] = {"between": ["roller/rim", "upper/bottom"]}
-        case 2:
             more["contact_zones"] = {"plate": {"edges": ["roller/rim"], "surface": plane(0, 2 * r, -90)}}
             more["tools"] = {"plate": {"zones": "plate", "force": {"y": rounded(-load)}}}
+        case 2:
+            axis: Spec = {"conditions": {"axis": {"symmetry": "x"}}}
+            base, over = (polygon([(0, y), (w, y), (w, y + h), (0, y + h)], "bottom right top axis")
+                          for y, h in ((rounded(-h, 6), h), (2 * r, rounded(draw.number(1, 4) * r))))  # fmt: skip
+            rim = {"name": "rim", "kind": "arc", "center": [0, r], "start": [0, 0], "end": [0, 2 * r]}
+            shaft = {"name": "axis", "start": [0, 2 * r], "end": [0, 0]}
+            pressed = {"axis": {"symmetry": "x"}, "top": {"pressure": rounded(load / w)}}
+            parts = {
+                "base": {**axis, "material": E, "boundary": {"outer": base}},
+                "roller": {**axis, "material": stiff, "boundary": {"outer": [rim, shaft]}},
+                "upper": {"material": draw.material(), "boundary": {"outer": over}, "conditions": pressed},
+            }
+            parts["base"]["conditions"] = {**axis["conditions"], "bottom": {"displacement": {"y": 0}}}
+            contacts["over"] = {"between": ["roller", "upper"]}
         case _:
-            step = rounded(r * draw.number(1.2, 1.8))
+            step, bar, play = rounded(r * draw.number(1.5, 1.8)), rounded(r / 5), rounded(r / 500)
             parts["roller"]["boundary"]["outer"] = disk(r, -step, r)
             parts["roller 2"] = {"copy_of": "roller", "shift": [2 * step, 0]}
-            parts["upper"] = pressed_block(draw, w, r * draw.number(1, 4), E, 2 * r, load)
-            for n in ("roller", "roller 2"):
-                contacts[f"under {n}"] = {"between": [f"{n}/rim", "base/top"]}
-                contacts[f"over {n}"] = {"between": [f"{n}/rim", "upper/bottom"]}
+            parts["upper"] = pressed_block(w, r * draw.number(1, 4), E, 2 * r, load)
             del contacts["under"]
+            for n, x in ("roller", -step), ("roller 2", step):
+                contacts[f"under {n}"] = {"between": [n, "base"]}
+                contacts[f"over {n}"] = {"between": [n, "upper"]}
+                for side, middle in ("left", x - r - play - bar / 2), ("right", x + r + play + bar / 2):
+                    outline = rectangle(bar, bar, rounded(middle, 6), rounded(r - bar / 2, 6))
+                    parts[f"{side} of {n}"] = {"rigid": True, "boundary": {"outer": outline}}
+                    contacts[f"{n} to the {side}"] = {"between": [n, f"{side} of {n}"]}
     return bodies("rolled", parts, contacts, **more)
 
 

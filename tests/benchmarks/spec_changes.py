@@ -151,7 +151,9 @@ def exchanged(spec: Spec) -> Spec:
 def whole(spec: Spec) -> Spec:
     """The whole of half of a body whose last edge is the axis x = 0."""
     made = deepcopy(spec)
-    made["boundary"] = {"outer": made["boundary"]["outer"][:-1], "mirror": {"x": 0}}
+    loop = made["boundary"]["outer"][:-1]
+    image = [{**edge, "name": f"{edge['name']} mirrored"} for edge in Change(mirror=True).loop(loop)]
+    made["boundary"]["outer"] = [*loop, *image]
     del made["conditions"]["axis"]
     made["conditions"] |= {f"{edge} mirrored": condition for edge, condition in made["conditions"].items()}
     for zone in made["contact_zones"].values():
