@@ -27,7 +27,7 @@ from pathlib import Path
 
 import numpy as np
 from random_specs import KINDS, Draw, Spec
-from spec_changes import UNITS, Change, exchanged, in_a_case, turns_freely, whole
+from spec_changes import UNITS, Change, cut, exchanged, in_a_case, reordered, turns_freely, whole
 
 import bemcontact
 from bemcontact import Problem, Result
@@ -155,6 +155,7 @@ def variants(spec: Spec, draw: Draw) -> Iterator[tuple[str, Spec, Callable[[], A
     yield plain("as it is", spec)
     angle = draw.number(1, 359) if turns_freely(spec) else draw.choice([90, 180, 270])
     changes = {f"turned by {angle}": Change(angle=angle), "mirrored": Change(mirror=True)}
+    changes["shifted"] = Change(shift=(draw.number(-3e3, 3e3), draw.number(-3e3, 3e3)))
     for name, (length, stress, labels) in UNITS.items():
         changes[name] = Change(length=length, stress=stress, units=labels)
     for name, change in changes.items():
@@ -162,6 +163,9 @@ def variants(spec: Spec, draw: Draw) -> Iterator[tuple[str, Spec, Callable[[], A
     if of_case := in_a_case(spec):
         yield plain("load case", of_case, case="own")
         yield "path", of_case, lambda: followed(of_case), False
+    yield plain("reordered", reordered(spec))
+    if "bonded" not in spec:
+        yield plain("cut", cut(spec))
     if "contacts" in spec:
         yield plain("exchanged", exchanged(spec))
     if spec["name"] == "half":

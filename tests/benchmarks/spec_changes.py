@@ -22,12 +22,13 @@ UNITS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """Mirrored on x = 0, then turned by an angle [degrees], in units whose numbers are larger by these factors."""
+    """Mirrored on x = 0, turned by an angle [degrees], then shifted, with numbers larger by the factors of units."""
 
     angle: float = 0.0
     mirror: bool = False
     length: float = 1.0
     stress: float = 1.0
+    shift: tuple[float, float] = (0.0, 0.0)
     units: Spec | None = None
 
     @property
@@ -39,8 +40,12 @@ class Change:
         return turn @ np.diag([-1.0 if self.mirror else 1.0, 1.0])
 
     def vector(self, value: Any, factor: float = 1.0) -> list[float]:
-        """A direction or a point about the origin."""
+        """A direction."""
         return [float(v) + 0.0 for v in factor * self.matrix @ np.array(value, float)]
+
+    def place(self, value: Any) -> list[float]:
+        """A point."""
+        return [v + moved for v, moved in zip(self.vector(value, self.length), self.shift, strict=True)]
 
     def components(self, value: Spec, factor: float, *, moment: str = "", both: bool = False) -> Spec:
         """A mapping of components; those that are left out stay so, which needs quarter turns."""
@@ -61,7 +66,8 @@ class Change:
         if not isinstance(value, dict):
             return value * factor
         slope = self.vector([value.get("x", 0), value.get("y", 0)], factor / self.length)
-        return {"constant": value.get("constant", 0) * factor, "x": slope[0], "y": slope[1]}
+        constant = value.get("constant", 0) * factor - slope[0] * self.shift[0] - slope[1] * self.shift[1]
+        return {"constant": constant, "x": slope[0], "y": slope[1]}
 
     def loop(self, edges: list[Spec]) -> list[Spec]:
         """A loop of edges; a mirrored one runs the other way."""
@@ -80,9 +86,9 @@ class Change:
         """A part of a spec by its key."""
         s, p = self.length, self.stress
         by_key: dict[str, Callable[[Any], Any]] = {
-            **dict.fromkeys(POINTS, lambda v: self.vector(v, s)),
+            **dict.fromkeys(POINTS, self.place),
             **dict.fromkeys(LENGTHS, lambda v: v * s),
-            "points": lambda v: [self.vector(point, s) for point in (v[::-1] if self.mirror else v)],
+            "points": lambda v: [self.place(point) for point in (v[::-1] if self.mirror else v)],
             "shift": lambda v: self.vector(v, s),
             "acceleration": lambda v: self.vector(v, p / s),
             "normal": self.vector,
@@ -158,4 +164,39 @@ def whole(spec: Spec) -> Spec:
     made["conditions"] |= {f"{edge} mirrored": condition for edge, condition in made["conditions"].items()}
     for zone in made["contact_zones"].values():
         zone["edges"] = [*zone["edges"], *(f"{edge} mirrored" for edge in zone["edges"])]
+    return made
+
+
+def reordered(spec: Spec) -> Spec:
+    """Bodies, zones, contacts and conditions in the opposite order, and each loop begun at its second edge."""
+
+    def turned(value: Any, key: str = "") -> Any:
+        if isinstance(value, dict):
+            back = key in ("bodies", "contact_zones", "contacts", "conditions", "tools")
+            return {name: turned(item, name) for name, item in ([*value.items()][::-1] if back else value.items())}
+        return [*value[1:], value[0]] if key == "outer" else deepcopy(value)
+
+    return turned(spec)
+
+
+def cut(spec: Spec) -> Spec:
+    """Each straight edge without a condition cut in two, at 0.37 of its length."""
+    made, parts = deepcopy(spec), dict[str, list[str]]()
+    for name, body in [("", made), *made.get("bodies", {}).items()]:
+        held, loop = body.get("conditions", {}), list[Spec]()
+        for edge in body.get("boundary", {}).get("outer", []):
+            loop.append(edge)
+            if edge.get("kind", "line") != "line" or "start" not in edge or edge["name"] in held:
+                continue
+            start, end = np.array([edge["start"], edge["end"]], float)
+            middle, other = [float(v) for v in start + 0.37 * (end - start)], f"{edge['name']} 2"
+            loop[-1:] = [{**edge, "end": middle}, {"name": other, "start": middle, "end": edge["end"]}]
+            whole, second = (f"{name}/{own}" if name else own for own in (edge["name"], other))
+            parts[whole] = [whole, second]
+        if loop:
+            body["boundary"]["outer"] = loop
+    for zone in made.get("contact_zones", {}).values():
+        zone["edges"] = [part for edge in zone["edges"] for part in parts.get(edge, [edge])]
+    for contact in made.get("contacts", {}).values():
+        contact["between"] = [parts.get(side, side) for side in contact["between"]]
     return made
