@@ -392,11 +392,12 @@ def pin(draw: Draw) -> Spec:
 def layer(draw: Draw) -> Spec:
     """A layer that lies on a block, or a coat that is bonded to it, under a rigid roller or a pressure."""
     w, h = draw.number(20, 80), draw.number(10, 40)
-    t = rounded(draw.number(0.03, 0.5) * h)
+    t, glued = rounded(draw.number(0.03, 0.5) * h), draw.chance(0.6)
+    t = t if glued else max(t, rounded(w / 30))
     E, soft = draw.material(), draw.material(5, 300e3)
     base = {"material": E, "boundary": {"outer": rectangle(w, h, 0, -h)}, "conditions": {"bottom": {"fixed": True}}}
     coat = {"material": soft, "boundary": {"outer": rectangle(w, t)}, "conditions": {}}
-    bonded = {"glue": ["coat/bottom", "base/top"]} if draw.chance(0.6) else {}
+    bonded = {"glue": ["coat/bottom", "base/top"]} if glued else {}
     contacts = {} if bonded else {"seat": {"between": ["coat/bottom", "base/top"]}}
     if not bonded:
         coat["conditions"]["left"] = {"displacement": {"x": 0}}
@@ -445,3 +446,73 @@ def half(draw: Draw) -> Spec:
     conditions = {"top": {"pressure": load}, "axis": {"symmetry": "x"}}
     return stated("half", material=E, boundary={"outer": edges}, conditions=conditions,
                   contact_zones={FLOOR: {"edges": ["foot"], "surface": surface}})  # fmt: skip
+
+
+@kind
+def wavy(draw: Draw) -> Spec:
+    """A block on a surface with bumps, lines or a spline; held or free."""
+    w, h, E = draw.number(10, 60), draw.number(5, 40), draw.material()
+    high, count = w * draw.number(1e-5, 1e-3), draw.choice([4, 5, 6, 8, 11])
+    heights = [round(high * draw.random(), 9) for _ in range(count)]
+    most = max(heights)
+    points = [[rounded((i / (count - 1) - 0.5) * 1.2 * w), round(y - most, 9)] for i, y in enumerate(heights)]
+    surface = {"kind": draw.choice(["spline", "spline", "polyline"]), "points": points}
+    conditions: Spec = {"top": {"pressure": rounded(draw.number(1e-5, 3e-3) * E["young_modulus"])}}
+    if draw.chance(0.7):
+        conditions["left"] = {"displacement": {"x": 0}}
+    zones = {FLOOR: {"edges": ["bottom"], "surface": surface}}
+    return stated("wavy", material=E, boundary={"outer": rectangle(w, h)}, conditions=conditions, contact_zones=zones,
+                  loads=volume_loads(draw))  # fmt: skip
+
+
+@kind
+def hook(draw: Draw) -> Spec:
+    """A clamped body with re-entrant corners, sharp or round, perhaps with a hole, whose feet touch rods and planes."""
+    w, h, t, E = draw.number(20, 60), draw.number(15, 50), draw.number(3, 8), draw.material()
+    inner, drop = rounded(w * draw.number(0.3, 0.6)), rounded(h * draw.number(0.2, 0.5))
+    corners = [(0, drop), (inner, drop), (inner, 0), (w, 0), (w, h), (0, h)]
+    edges = polygon(corners, "ledge riser foot right top clamp")
+    if draw.chance(0.6):
+        edges.insert(1, {"name": "throat", "fillet": rounded(draw.number(0.05, 0.4) * min(inner, drop))})
+    r = rounded(draw.number(0.1, 0.3) * min(w - inner, h - drop))
+    holes = [bore(r, rounded((inner + w) / 2), rounded((drop + h) / 2), "hole")] if draw.chance(0.5) else []
+    low, place = w * draw.number(1e-5, 1e-3), rounded(inner + (w - inner) * draw.number(0.2, 0.8))
+    R = draw.number(1, 50)
+    foot = draw.choice([plane(0, -rounded(low, 5)), circle(place, -rounded(R + low, 8), R)])
+    zones = {"foot": {"edges": ["foot"], "surface": foot}}
+    if draw.chance(0.4):
+        R, near = draw.number(0.5, t), rounded(low * draw.random() / 3)
+        zones["ledge"] = {"edges": ["ledge"], "surface": circle(rounded(inner / 2), rounded(drop - R - near, 9), R)}
+    load = rounded(-draw.number(1e-6, 1e-4) * E["young_modulus"] * w)
+    conditions = {"clamp": {"fixed": True}, "top": {"force": {"x": 0, "y": load}}}
+    return stated("hook", material=E, boundary={"outer": edges, "holes": holes}, conditions=conditions,
+                  contact_zones=zones, loads=volume_loads(draw))  # fmt: skip
+
+
+@kind
+def seats(draw: Draw) -> Spec:
+    """An elastic beam on two or three elastic blocks or half-round feet, pressed at several places."""
+    w, t, E = draw.number(30, 100), draw.number(2, 12), draw.material()
+    places = sorted(draw.sample([-0.45, -0.3, -0.15, 0.0, 0.15, 0.3, 0.45], draw.choice([2, 3])))
+    beam = rectangle(w * 1.3, t)
+    parts: Spec = {"beam": {"material": E, "boundary": {"outer": beam}}}
+    parts["beam"]["conditions"] = {"left": {"displacement": {"x": 0}}}
+    parts["beam"]["conditions"]["top"] = {"pressure": rounded(draw.number(1e-7, 1e-5) * E["young_modulus"])}
+    contacts: Spec = {}
+    for number, place in enumerate(places, 1):
+        x, b, tall = rounded(place * w), rounded(draw.number(0.01, 0.06) * w), rounded(draw.number(0.05, 0.3) * w)
+        low = draw.choice([0, 0, rounded(w * draw.number(1e-6, 1e-4))])
+        outer = rectangle(2 * b, tall, x, rounded(-tall - low, 8))
+        if draw.chance(0.5):
+            R = rounded(b * draw.number(1.1, 10), 8)
+            outer = rectangle(2 * b, tall, x, rounded(-tall - low - R, 8))
+            high = -low - R + (R * R - b * b) ** 0.5
+            for edge, end in (outer[1], "end"), (outer[2], "start"), (outer[2], "end"), (outer[3], "start"):
+                edge[end] = [edge[end][0], high]
+            outer[0]["start"] = outer[3]["end"] = [outer[0]["start"][0], outer[0]["start"][1]]
+            outer[2] |= {"kind": "arc", "center": [x, -low - R]}
+        name = f"seat {number}"
+        held = {"bottom": {"fixed": True}}
+        parts[name] = {"material": draw.material(), "boundary": {"outer": outer}, "conditions": held}
+        contacts[f"on {number}"] = {"between": [f"{name}/top", "beam/bottom"]}
+    return bodies("seats", parts, contacts)
