@@ -2,9 +2,10 @@
 
     python tests/benchmarks/random_problems.py [--seed 1] [--count 100] [--kind KIND ...] [--out FOLDER] [--limit 120]
 
-A problem is solved as it is, turned, mirrored, in other units, as one of several load cases, as the end of a path, with
-a quarter of the accuracy, and where this can be with its sides exchanged, or as a whole instead of its half. A
-disagreement is printed, and its specs are written to the folder:
+A problem is solved as it is, turned, mirrored, shifted, in other units, as one of several load cases, as the end of a
+path, in another order, with edges cut in two, with a quarter of the accuracy, and where this can be with its sides
+exchanged, or as a whole instead of its half. What does not hold as it is, is solved in fewer ways. A disagreement is
+printed, and its specs are written to the folder:
 
 WRONG      both answers are certified and met, and differ by more than their bars; or forces do not balance
 TRACEBACK  another error than those of the package, or a warning
@@ -17,6 +18,7 @@ import argparse
 import json
 import signal
 import sys
+import tempfile
 import time
 import traceback
 import warnings
@@ -255,7 +257,8 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=100, help="number of problems of all kinds together")
     parser.add_argument("--kind", nargs="+", choices=KINDS, default=[*KINDS], metavar="KIND", help=", ".join(KINDS))
     parser.add_argument("--only", nargs="+", default=[], metavar="WORD", help="variants whose names have one of these")
-    parser.add_argument("--out", type=Path, default=Path("random-problems"), metavar="FOLDER")
+    folder = Path(tempfile.gettempdir()) / "bemcontact-random"
+    parser.add_argument("--out", type=Path, default=folder, metavar="FOLDER", help="of specs, %(default)s by default")
     parser.add_argument("--limit", type=float, default=120, help="seconds of processor time for one answer")
     given = parser.parse_args()
     signal.signal(signal.SIGPROF, give_up)
