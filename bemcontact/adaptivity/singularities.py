@@ -18,7 +18,9 @@ from bemcontact.adaptivity.wedge_exponents import (
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
 from bemcontact.bem.mesh import CORNER
+from bemcontact.problems.curves import cross
 from bemcontact.problems.nearest_places import surface_corners
+from bemcontact.problems.rigid_surface import DeflectedContour
 
 GROWING = 1.04, 1.9
 """Growth of the pressure at a place by bisection between which it may be infinite."""
@@ -45,6 +47,8 @@ SHARP = 1e-4
 """Rounding of a corner over the contact up to which its pressure must be right."""
 STRAIGHT = 1e-9
 """Angle of a kink that is none [rad]."""
+BESIDE_TIP = 1e-6
+"""Distance from an end of an element, over its length, at which a surface that may have a corner is looked at."""
 SAME = 1e-6
 """Distance of two places over the length of their run up to which they are one."""
 
@@ -64,7 +68,10 @@ class ContactPlace:
     bonded: bool = False
     """Whether a bond begins there."""
     kink: float = 0.0
-    """Angle by which surface and body, both as drawn, turn away from each other there [rad]."""
+    """Angle by which surface and body, both as drawn, turn away from each other there [rad].
+
+    Beside a face that is held along its normal, or in contact, it is that with the mirror image in this face.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,7 +226,8 @@ def _rise(difference: MeshDifference, place: ContactPlace) -> float:
     size = max(float(fine.weights[elements].sum(axis=1).min()) / (length or run.length), SHARP)
     if place.bonded:
         return max(0.0, (at + _rise_beside_bond(fine, answer, run, place, SHARP * (length or run.length))) / peak - 1)
-    if all(face.contact for face in wedge[2]) and abs(wedge[1] - np.pi) < CORNER:
+    straight = all(face.contact for face in wedge[2]) and abs(wedge[1] - np.pi) < CORNER
+    if straight or (place.end and place.kink):
         softer = (1.0, opposite.stiffness) if opposite else (1.0,)
         slope = _slope(fine, place.kink, fine.body.part_of(int(elements[0]))) * min(softer)
         return max(0.0, (at + slope * np.log(size / SHARP)) / peak - 1)
@@ -321,8 +329,9 @@ def _places(difference: MeshDifference) -> Iterator[ContactPlace]:
                     after = 2 * at > run.length
                     corner = not end or _corner_of_body(coarse, run, after=after)
                     bonded = end and bool(coarse.body.points.bonded_ends[run.number, int(after)])
+                    kink = _kink_at_end(coarse, one, run, after=after) if end and not bonded else 0.0
                     yield ContactPlace(
-                        run=run.number, zone=run.zone, position=at, end=end, corner=corner, bonded=bonded
+                        run=run.number, zone=run.zone, position=at, end=end, corner=corner, bonded=bonded, kink=kink
                     )
         kinks = dict(_turns_of_surface(coarse, run))
         for position, turn in zip(run.joints.tolist(), run.turn.tolist(), strict=True):
@@ -333,6 +342,48 @@ def _places(difference: MeshDifference) -> Iterator[ContactPlace]:
         for position, kink in kinks.items():
             if run.closed or 0 < position < run.length:
                 yield ContactPlace(run=run.number, zone=run.zone, position=position, corner=True, kink=kink)
+
+
+def _kink_at_end(solved: Solved, answer: CaseAnswer, run: ZoneRun, *, after: bool) -> float:
+    """How surface and body turn away from each other at the end of a run, as of `ContactPlace` [rad].
+
+    Neither face there may turn as it likes. If both would turn the body's corner into a wider one, pressure grows
+    there as under a blunt corner: that of the whole, of which the body is half if this corner is a right angle.
+    """
+    mesh, elements = solved.mesh, run_elements(solved, run)
+    start = int(mesh.elements[elements[-1], 2] if after else elements[0])
+    (_, angle, _, _), _ = _wedge_at(solved, answer, start)
+    turns = [_turn_of_face(solved, answer, element, at) for element, at in ((int(mesh.before[start]), 2), (start, 0))]
+    halves = [part for part in (1, 2) if abs(part * angle - np.pi) < CORNER]
+    if turns[0] is None or turns[1] is None or not halves:
+        return 0.0
+    kink = halves[0] * (turns[0] - turns[1])
+    return kink if abs(kink) > STRAIGHT else 0.0
+
+
+def _turn_of_face(solved: Solved, answer: CaseAnswer, element: int, at: int) -> float | None:
+    """Counterclockwise turn [rad] that a surface or prescribed displacements state for an end of an element.
+
+    `at` is its local node there. None for an end that is free to turn, or that shear acts on.
+    """
+    mesh, body = solved.mesh, solved.body
+    along = mesh.tangents[element, at] / np.hypot(*mesh.tangents[element, at])
+    left = np.array([-along[1], along[0]])  # into the body
+    if answer.presses(element):
+        zones = [*body.problem.zones.values()]
+        with_it = [number for number, of in body.points.facing.items() if (of == element).any()]
+        zone = with_it[0] if with_it else int(np.argmax(answer.pressure[:, element, 1]))
+        surface = zones[zone].surface
+        if isinstance(surface, DeflectedContour) or with_it:
+            return None
+        beside = mesh.nodes[mesh.elements[element, at]] + (1 - at) * BESIDE_TIP * mesh.lengths[element] * along
+        return float(np.arcsin(cross(left, surface.closest(beside[None]).normals[0])))
+    held = body.acting.values.traction_unknown[element]
+    if (held.sum() == 1) and abs(left[~held]).max() <= STRAIGHT:
+        u = body.acting.values.displacement[mesh.elements[element]] @ left
+        slope = (4 * u[1] - 3 * u[at] - u[2 - at]) / mesh.lengths[element]
+        return float(np.arctan((1 - at) * slope))
+    return None
 
 
 def _corner_of_body(solved: Solved, run: ZoneRun, *, after: bool) -> bool:

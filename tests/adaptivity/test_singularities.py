@@ -164,3 +164,46 @@ def test_a_curve_drawn_as_lines_has_infinite_peaks_whatever_is_asked(facets: int
     circle = np.column_stack([20 + 50 * np.cos(angles), 50 * (np.sin(angles) - 1)])
     (judged,) = meshed(on_polyline([(x, y) for x, y in circle.tolist()], accuracy)).accuracies
     assert judged.infinite == ("floor",)
+
+
+def on_a_tilt(slope: float, accuracy: float | None, held: dict[str, object], elements: int | None = None) -> Problem:
+    """A block of 40 x 25, pressed on a plane that is tilted against it, beside a face that is held or on a wall."""
+    corners = {"bottom": (0, 0), "right": (40, 0), "top": (40, 25), "left": (0, 25)}
+    plane = {"kind": "plane", "point": (0, 0), "normal": (slope, 1)}
+    wall = {"wall": {"edges": "left", "surface": {"kind": "plane", "point": (0, 0), "normal": (1, 0)}}}
+    return Problem.model_validate({
+        "name": "tilt", "accuracy": accuracy, "material": {"young_modulus": 30e3, "poisson_ratio": 0.07},
+        "boundary": {"outer": [{"name": key, "start": at, "elements": elements} for key, at in corners.items()]},
+        "conditions": {"top": {"pressure": 36}, "right": {"pressure": 20}, **({"left": held} if held else {})},
+        "contact_zones": {"floor": {"edges": "bottom", "surface": plane}, **({} if held else wall)},
+    })  # fmt: skip
+
+
+def test_beside_a_held_face_a_tilt_is_a_corner_of_twice_its_angle():
+    """Pressure grows by E*/π times the slope and ln 2 each time that elements are cut in two, as on the whole of it."""
+    held, slope = {"displacement": {"x": 0}}, 2e-4
+    on_meshes = [float(solved(on_a_tilt(slope, None, held, count)).answers[0].pressure[0].max()) for count in (60, 120)]
+    each = _slope(solved(on_a_tilt(0.0, None, held, 4)), 2 * slope, 0) * np.log(2)
+    assert on_meshes[1] - on_meshes[0] == pytest.approx(each, rel=0.02)
+
+
+@pytest.mark.parametrize("held", ["face", "wall", "turned"])
+@pytest.mark.parametrize(("slope", "accuracy", "infinite"), [(2e-4, 0.05, True), (2e-5, 0.01, True),
+                                                            (2e-5, 0.1, False), (-2e-4, 0.01, False)])  # fmt: skip
+def test_a_tilt_beside_a_held_face_or_a_wall_is_told_or_in_the_bar(
+    held: str, slope: float, accuracy: float, infinite: bool
+):
+    """Also where displacements that are prescribed turn the face, and the plane is level."""
+    conditions: dict[str, dict[str, object]] = {
+        "face": {"displacement": {"x": 0}},
+        "wall": {},
+        "turned": {"displacement": {"x": {"constant": 0, "y": -slope}}},
+    }
+    problem = on_a_tilt(0.0 if held == "turned" else slope, accuracy, conditions[held])
+    (found,) = meshed(problem).accuracies
+    assert found.met
+    peaks = [bar for bar in found.bars if bar.quantity == "peak" and bar.zone in ("floor", None)]
+    assert any(bar.value is None for bar in peaks) == infinite
+    if not infinite and slope > 0:
+        grows = 30e3 / (1 - 0.07**2) * slope / np.pi * np.log(10)
+        assert max(bar.bar * bar.value for bar in peaks) >= grows
