@@ -18,6 +18,7 @@ from bemcontact.adaptivity.wedge_exponents import (
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
 from bemcontact.bem.mesh import CORNER
+from bemcontact.problems.body_surface import BodySurface
 from bemcontact.problems.curves import cross
 from bemcontact.problems.nearest_places import surface_corners
 from bemcontact.problems.rigid_surface import DeflectedContour
@@ -362,19 +363,18 @@ def _kink_at_end(solved: Solved, answer: CaseAnswer, run: ZoneRun, *, after: boo
 
 
 def _turn_of_face(solved: Solved, answer: CaseAnswer, element: int, at: int) -> float | None:
-    """Counterclockwise turn [rad] that a surface or prescribed displacements state for an end of an element.
+    """Counterclockwise turn [rad] that a rigid surface or prescribed displacements state for an end of an element.
 
-    `at` is its local node there. None for an end that is free to turn, or that shear acts on.
+    `at` is its local node there. None for an end that is free to turn, that shear acts on, or on another elastic body.
     """
     mesh, body = solved.mesh, solved.body
     along = mesh.tangents[element, at] / np.hypot(*mesh.tangents[element, at])
     left = np.array([-along[1], along[0]])  # into the body
     if answer.presses(element):
-        zones = [*body.problem.zones.values()]
-        with_it = [number for number, of in body.points.facing.items() if (of == element).any()]
-        zone = with_it[0] if with_it else int(np.argmax(answer.pressure[:, element, 1]))
-        surface = zones[zone].surface
-        if isinstance(surface, DeflectedContour) or with_it:
+        pressure = answer.pressure[:, element, 1]
+        surface = [*body.problem.zones.values()][int(np.argmax(pressure))].surface
+        other = isinstance(surface, BodySurface) and surface.elastic
+        if not pressure.any() or other or isinstance(surface, DeflectedContour):
             return None
         beside = mesh.nodes[mesh.elements[element, at]] + (1 - at) * BESIDE_TIP * mesh.lengths[element] * along
         return float(np.arcsin(cross(left, surface.closest(beside[None]).normals[0])))

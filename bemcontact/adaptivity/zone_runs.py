@@ -9,6 +9,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.bem.body import Body
+from bemcontact.bem.contact_points import ALIKE
 from bemcontact.bem.mesh import CORNER
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
@@ -35,6 +36,7 @@ class ZoneRun:
     turn : (k + 1,) angle by which the boundary turns to the left, into the body, at each joint of the k edges [rad];
         zero at the ends of an open run
     beside : the edges before and after the piece; none if it is closed
+    off : whether conditions hold its first and its last node off the surface
     """
 
     number: int
@@ -45,6 +47,7 @@ class ZoneRun:
     breakpoints: tuple[Array, ...]
     turn: Array
     beside: tuple[Edge, ...]
+    off: tuple[bool, bool] = (False, False)
 
     @property
     def length(self) -> float:
@@ -103,7 +106,7 @@ class ZoneRun:
 def zone_runs(body: Body) -> Iterator[ZoneRun]:
     """List the unbroken pieces of all contact zones of a body on its mesh, by their numbers."""
     mesh, points, problem = body.mesh, body.points, body.problem
-    lengths, zones = mesh.lengths, [*problem.zones]
+    lengths, zones, off = mesh.lengths, [*problem.zones], _held_off(body)
     for number, elements in enumerate(points.elements_of_run):
         if not len(elements):
             continue  # a corner of the body that stands on a face by itself
@@ -122,7 +125,19 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
             breakpoints=breakpoints,
             turn=_turns(edges, closed=closed),
             beside=() if closed else tuple(problem.edge(mesh.edge_names[mesh.edge[i]]) for i in outside),
+            off=(int(elements[0]) in off[points.zone_of_run[number]], outside[1] in off[points.zone_of_run[number]]),
         )
+
+
+def _held_off(body: Body) -> dict[int, set[int]]:
+    """Nodes of each zone that conditions hold off the surface, by its number; not those beside tools that are free."""
+    held, gap = body.points.held, body.held_gaps
+    off = {number: set[int]() for number in range(len(body.problem.zones))}
+    if held is not None:
+        open_ = (gap > ALIKE * body.mesh.size) & np.isfinite(gap)
+        for zone, node in zip(held.zone[open_].tolist(), held.node[open_].tolist(), strict=True):
+            off[zone].add(node)
+    return off
 
 
 def _turns(edges: Sequence[Edge], *, closed: bool) -> Array:
@@ -177,9 +192,11 @@ def contact_stretches(
             start_arc = min(start_arc, (arcs[first] + arcs[max(first - 1, 0)]) / 2)
             end_arc = max(end_arc, (arcs[last] + arcs[min(last + 1, len(arcs) - 1)]) / 2)
         corners = first < last  # a single point at a corner does not decide on which side contact is
-        at_start = first == 0 and arcs[first] <= run.arc[1] + same  # else points beyond are not turned to the surface
+        at_start = (
+            first == 0 and not run.off[0] and arcs[first] <= run.arc[1] + same
+        )  # else points beyond are not turned to the surface
         start, start_free = _end(run, start_arc, arcs[first], 0.0 if at_start else None, corners)
-        at_end = last == len(arcs) - 1 and arcs[last] >= run.arc[-2] - same
+        at_end = last == len(arcs) - 1 and not run.off[1] and arcs[last] >= run.arc[-2] - same
         end, end_free = _end(run, end_arc, arcs[last], run.length if at_end else None, corners)
         yield Stretch(start=start, end=end, start_free=start_free, end_free=end_free, points=last - first + 1)
 

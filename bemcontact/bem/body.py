@@ -182,6 +182,23 @@ class Body:
         return changes
 
     @cached_property
+    def held_gaps(self) -> Array:
+        """Gap (h,) [L] at each of `ContactPoints.held` under the loads that act; infinite beside a free tool."""
+        held, mesh = self.points.held, self.mesh
+        if held is None:
+            return np.zeros(0)
+        position = self.tools.position @ self.factors
+        gap = held.gap + np.sum(held.normals * self.acting.values.displacement[held.node], axis=1)
+        for number, tool in enumerate(self.problem.tools.values()):
+            own = np.isin(held.zone, [[*self.problem.zones].index(zone) for zone in tool.zones])
+            arm = mesh.nodes[held.node] - self.tools.point[number]
+            x, y, turn = position[3 * number : 3 * number + 3]
+            moved = np.array([x, y]) + turn * np.column_stack([-arm[:, 1], arm[:, 0]])
+            gap -= np.where(own, np.sum(held.normals * moved, axis=1), 0.0)
+            gap[own & any(tool.free)] = np.inf
+        return gap
+
+    @cached_property
     def seen_motion(self) -> Array:
         """R (n, k): change of the gaps in the seen motions, without round-off."""
         R = self.normal_motion(self.seen)
@@ -356,15 +373,7 @@ def _ensure_room_where_held(body: Body) -> None:
     held, problem = body.points.held, body.problem
     if held is None:
         return
-    position, given = body.tools.position @ body.factors, body.acting.values.displacement
-    gap = held.gap + np.sum(held.normals * given[held.node], axis=1)
-    for number, tool in enumerate(problem.tools.values()):
-        own = np.isin(held.zone, [[*problem.zones].index(zone) for zone in tool.zones])
-        arm = body.mesh.nodes[held.node] - body.tools.point[number]
-        x, y, turn = position[3 * number : 3 * number + 3]
-        moved = np.array([x, y]) + turn * np.column_stack([-arm[:, 1], arm[:, 0]])
-        gap -= np.where(own, np.sum(held.normals * moved, axis=1), 0.0)
-        gap[own & any(tool.free)] = np.inf
+    gap = body.held_gaps
     if (depth := -gap.min(initial=0.0)) > HELD_INSIDE * body.mesh.size:
         worst = int(gap.argmin())
         x, y = body.mesh.nodes[held.node[worst]]

@@ -247,3 +247,30 @@ def test_starts_and_ends_have_their_places():
     (interval,) = result.footprint.intervals
     for name, place in (("start", interval.start), ("end", interval.end)):
         assert result.accuracy.bar_of(name).at == pytest.approx(place, abs=1e-9)
+
+
+@pytest.mark.parametrize("slant", [0.0, 8.0])
+@pytest.mark.parametrize("gap", [1e-5, 2e-4, 2e-3])
+def test_contact_ends_before_a_corner_that_is_held_off_the_surface(gap: float, slant: float):
+    """The corner cannot touch. The bars hold an answer of four times the accuracy, and no pressure is infinite."""
+    corners = {"bottom": (0, 0), "right": (40, 0), "top": (40 + slant, 20), "left": (0, 20)}
+    block = {
+        "name": "clamped",
+        "material": {"young_modulus": 30200.0, "poisson_ratio": 0.3},
+        "boundary": {"outer": [{"name": name, "start": at} for name, at in corners.items()]},
+        "conditions": {"top": {"pressure": 30.0}, "right": {"fixed": True}},
+        "contact_zones": {
+            "floor": {"edges": "bottom", "surface": {"kind": "plane", "point": (0, -gap), "normal": (0, 1)}}
+        },
+    }
+    coarse, fine = (
+        {
+            bar.quantity: bar
+            for bar in meshed(Problem.model_validate({**block, "accuracy": accuracy})).accuracies[0].bars
+        }
+        for accuracy in (0.01, 0.0025)
+    )
+    assert coarse["end"].value < 40 - 1e-3
+    for quantity, unit in (("end", 40.0), ("peak", coarse["peak"].value)):
+        one, other = coarse[quantity], fine[quantity]
+        assert abs(one.value - other.value) <= (one.bar + other.bar) * unit
