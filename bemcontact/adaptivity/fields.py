@@ -30,6 +30,8 @@ ALIKE = 1e-6
 """Relative difference below which two elements change alike: both are bisected, or none."""
 PENETRATION = 1e-3
 """Penetration between nodes, over the largest displacement, that a mesh must resolve."""
+ROUNDED = 1e-13
+"""Penetration over the size of the mesh that is round-off of coordinates, whatever the displacement is."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -340,5 +342,5 @@ def penetrations(answer: Solved, case: CaseAnswer) -> Iterator[tuple[int, float]
         elements = np.flatnonzero(answer.in_zone[number] & ~(case.pressure[number] > 0).any(axis=1))
         if zone in gaps.surfaces and len(elements):
             least = gaps.linear(zone, elements).gap.min(axis=1)
-            through = least < -PENETRATION * size
+            through = least < -max(PENETRATION * size, ROUNDED * answer.mesh.size)
             yield from zip(elements[through].tolist(), (-least[through]).tolist(), strict=True)

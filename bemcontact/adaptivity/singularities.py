@@ -253,7 +253,7 @@ def _rise_beside_bond(solved: Solved, answer: CaseAnswer, run: ZoneRun, place: C
     own = int(elements[0] if at_start else elements[-1])
     beyond = int(mesh.before[own] if at_start else mesh.elements[own, 2])
     (own_half, half), middle = mesh.lengths[[own, beyond]] / 2, complex(*answer.traction[beyond, 1])
-    return state.intensity(middle, half) * (near**-state.exponent - own_half**-state.exponent)
+    return state.intensity(middle, float(half)) * (near**-state.exponent - float(own_half) ** -state.exponent)
 
 
 def _slope(solved: Solved, kink: float, part: int) -> float:

@@ -86,7 +86,7 @@ def follow(
     on_mesh, found = _on_mesh(problem, key, begin, end)
     varied = Variation(on_mesh, key)
     path = load_path(*(replace(contact, name=problem.title) for contact in between(varied, begin, end)))
-    first, last = (_accuracy(varied, value, found.get(value), bool(found)) for value in (begin, end))
+    first, last = (_accuracy(varied, value, found.get(value), _is_halved(on_mesh, found)) for value in (begin, end))
     infinite = (*first.infinite, *last.infinite)
     followed = FollowedPath(varied, path, begin, end)
     deepest, at, said = penetration_on_path(followed, infinite=infinite)
@@ -204,10 +204,15 @@ def _accuracy(varied: Variation, value: float, found: Meshed | None, halved: boo
     return accuracy.knowing(*found.accuracies) if found else accuracy
 
 
+def _is_halved(problem: Problem, found: Mapping[float, Meshed]) -> bool:
+    """Whether a mesh that was found has halved elements; where no state could be solved, it has the first ones."""
+    return bool(found) and problem.mesh.refine % 2 == 0
+
+
 def _errors(followed: FollowedPath, found: Mapping[float, Meshed]) -> tuple[tuple[ErrorBar, ...], ...]:
     """Error bars at each breakpoint, by a path on elements half as long, or twice if the mesh was found; or none."""
     problem, key, start, end = followed.varied.problem, followed.varied.key, followed.start, followed.end
-    refine, of_fine = problem.mesh.refine, bool(found)
+    refine, of_fine = problem.mesh.refine, _is_halved(problem, found)
     varied = Variation(cut(problem, refine // 2 if of_fine else 2 * refine), key)
     try:
         other = FollowedPath(varied, load_path(*between(varied, start, end)), start, end)

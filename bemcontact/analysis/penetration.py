@@ -5,6 +5,7 @@ in no zone of it.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -28,6 +29,8 @@ from bemcontact.problems.problem import Problem
 
 DETAIL = 1e-4
 """Length over the size of the body of parts of its boundary that may fold: the tip of a notch."""
+FIRST_TOUCH = 1e-6
+"""Pressure over the largest on a path up to which it is the round-off of a state of first touch: it presses nothing."""
 
 
 def misfit(
@@ -222,6 +225,8 @@ def penetration_on_path(
     last, near, strained = len(path.parameter) - 1, part_of_path(varied.problem), dict[str, tuple[Noticed, float]]()
     for i, t in enumerate(path.parameter.tolist()):
         value, solution = followed.value(t), path.breakpoint(i)
+        if solution.pressure.max(initial=0.0) <= FIRST_TOUCH * path.pressure.max(initial=0.0):
+            solution = replace(solution, pressure=np.zeros_like(solution.pressure))
         condensation, state = followed.state(t, solution)
         body, contact = condensation.body, condensation.contact
         gaps = surface_gaps(body, state, contact, solution)

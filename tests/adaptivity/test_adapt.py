@@ -23,6 +23,7 @@ from adaptive_problems import (
     rectangle,
     wave_light,
 )  # fmt: skip
+from debonds import halves
 
 from bemcontact import solve
 from bemcontact.adaptivity import adapt
@@ -756,3 +757,14 @@ def test_without_a_mesh_to_compare_with_nothing_is_known(monkeypatch: pytest.Mon
     assert judged.met is False
     assert {item.bar for item in judged.bars} == {None}
     assert "no mesh was found to compare it with" in judged.bars[-1].note
+
+
+@pytest.mark.parametrize("elements", [None, 3])
+def test_without_a_load_no_element_is_divided_for_round_off(elements: int | None):
+    """A closed crack that nothing presses: gaps of 1e-17 are no penetration, though displacements are no larger."""
+    held = {"bottom": {"displacement": {"y": 0}}, "left": {"displacement": {"x": 0}}}
+    crack = halves("bcb", ({"top": {"pressure": 0.0}}, held), n=elements, accuracy=0.01)
+    progress: list[str] = []
+    meshed(crack, progress.append)
+    unknowns = [int(number) for words in progress for number in re.findall(r"(\d+) unknowns", words)]
+    assert max(unknowns) < 1000, progress

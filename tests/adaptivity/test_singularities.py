@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from debonds import PRESSURE, halves
 
 from bemcontact.adaptivity.adapt import meshed
 from bemcontact.adaptivity.fields import solved
@@ -207,3 +208,66 @@ def test_a_tilt_beside_a_held_face_or_a_wall_is_told_or_in_the_bar(
     if not infinite and slope > 0:
         grows = 30e3 / (1 - 0.07**2) * slope / np.pi * np.log(10)
         assert max(bar.bar * bar.value for bar in peaks) >= grows
+
+
+HELD = {"top": {"pressure": PRESSURE}}, {"bottom": {"displacement": {"y": 0}}, "left": {"displacement": {"x": 0}}}
+"""Conditions of two blocks that are bonded on one half of their common line."""
+
+
+@pytest.mark.parametrize(("modulus", "elements"), [(200.0, None), (5000.0, None), (5000.0, 4)])
+def test_pressure_beside_a_bond_of_different_materials_is_infinite(modulus: float, elements: int | None):
+    """Like the root, as the shear of the bond: K = |β| times its intensity there, from any mesh.
+
+    For equal ratios of 0.3 Dundurs' β is 0.8/2.8 times (G1 - G2)/(G1 + G2).
+    """
+    found = meshed(halves("bc", HELD, moduli=(1000.0, modulus), n=elements, accuracy=2e-3 if elements is None else 0.1))
+    (accuracy,) = found.accuracies
+    (peak,) = (bar for bar in accuracy.bars if bar.quantity == "peak")
+    assert peak.value is None
+    assert peak.at == (0.0, 0.0)
+    assert "where a bond begins" in peak.note
+    (intensity,) = (bar for bar in accuracy.bars if bar.quantity == "intensity")
+    assert intensity.note == "p = K s^-0.5"
+    if intensity.value is None:
+        return
+    answer = solved(found.problem).answers[0]
+    own = answer.state.edge == answer.state.edge_names.index("up/i0")
+    s, shear = -answer.state.points[own, 1:2, 0].ravel(), answer.traction[own, 1:2, 0].ravel()
+    beside = (s > 0.02) & (s < 0.3)
+    assert beside.sum() > 6
+    fit = np.polynomial.Polynomial.fit(np.sqrt(s[beside]), shear[beside] * np.sqrt(s[beside]), 3)
+    beta = 0.8 / 2.8 * (1000.0 - modulus) / (1000.0 + modulus)
+    assert intensity.value == pytest.approx(abs(beta * fit(0.0)), rel=intensity.bar)
+
+
+@pytest.mark.parametrize("elements", [None, 4])
+def test_pressure_beside_a_bond_of_equal_materials_is_finite_whatever_the_shear(elements: int | None):
+    """Also where stress of the bond is infinite: mode II has no pressure on its line."""
+    sheared = {"top": {"traction": {"x": 1.0, "y": -PRESSURE}}}, HELD[1]
+    (accuracy,) = meshed(halves("bc", sheared, n=elements, accuracy=0.02)).accuracies
+    assert not accuracy.infinite
+    (start,) = (bar for bar in accuracy.bars if bar.quantity == "start")
+    assert start.note == "contact reaches the bond"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("modulus", [1000.0, 5000.0])
+@pytest.mark.parametrize(("kinds", "n"), [("bc", 3), ("bcb", 2), ("cbc", 2)])
+def test_error_bars_of_a_debond_against_finer_meshes(kinds: str, n: int, modulus: float):
+    """The error of a stated mesh, as elements a quarter as long tell it, is below its bar, and so is that of halves."""
+    load = {"top": {"pressure": {"constant": PRESSURE, "x": 1.0}}}, HELD[1]
+    problem = halves(kinds, load, moduli=(1000.0, modulus), n=n, accuracy=0.05)
+    (coarse,), (middle,), (fine,) = (meshed(problem.refined(refine)).accuracies for refine in (1, 2, 4))
+    known = {(bar.quantity, bar.zone): bar.value for bar in fine.bars}
+    for bars in (coarse.bars, middle.bars):
+        compared = 0
+        for bar in bars:
+            exact = known.get((bar.quantity, bar.zone))
+            if bar.quantity in ("peak", "force", "pressure", "displacement") and None not in (
+                bar.bar,
+                bar.value,
+                exact,
+            ):
+                assert abs(bar.value - exact) <= bar.bar * abs(bar.value), bar
+                compared += 1
+        assert compared >= 2

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from debonds import halves
 from tool_problems import BETWEEN, made
 
 import bemcontact
@@ -462,3 +463,20 @@ def test_a_squeezed_block_bulges_beside_a_wall_and_is_moved_off_it(turn):
     np.testing.assert_allclose(path.at(1.0).pressure, pressure, rtol=0, atol=1e-9 * pressure.max())
     assert not pressure[wall].any()
     assert end.solution.undetermined
+
+
+@pytest.mark.parametrize(("start", "end"), [(-2.0, 5.0), (5.0, -2.0), (5.0, 0.0), (0.0, 5.0)])
+def test_a_crack_closes_as_a_whole_where_the_load_changes_its_sign(start: float, end: float):
+    """Under uniform pressure all of it is closed, and under tension open: the load is zero at its only breakpoint.
+
+    Pressure and motion there are round-off beside those on the path, which no finding is of.
+    """
+    held = {"bottom": {"displacement": {"y": 0}}, "left": {"displacement": {"x": 0}}}
+    crack = halves("bcb", ({"top": {"pressure": 5.0}}, held))
+    path = follow(crack, "bodies.up.conditions.top.pressure", end, start=start)
+    assert path.certified
+    assert path.penetration is None
+    assert not path.notes
+    inside = [state.value for state in path.breakpoints if state.value not in (start, end)]
+    assert inside == pytest.approx([0.0] if start * end < 0 else [], abs=1e-9)
+    assert path.path.pressure.max() == pytest.approx(5.0)

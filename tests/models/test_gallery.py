@@ -55,6 +55,7 @@ def test_gallery_is_complete():
         "block_in_corner",
         "body_between_two_tools",
         "cam_on_follower",
+        "closed_crack",
         "eccentric_punch",
         "flat_punch",
         "hertz_small",
