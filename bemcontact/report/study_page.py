@@ -1,6 +1,7 @@
 """The page of a study of parameters, its summary in the terminal, and its rows in a notebook."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from html import escape
 from typing import Any
 
@@ -67,6 +68,11 @@ def _mesh_verdict(rows: list[MemberRow]) -> Verdict:
 def _worst(rows: tuple[MemberRow, ...], *, certified: bool) -> str:
     """Say of the first member that is not certified what is wrong."""
     return _sentence(next(row for row in rows if row.certified is certified))
+
+
+def _first_note(row: MemberRow) -> str:
+    """The first note of a member on what its error bars do not include, in a sentence that names it."""
+    return _sentence(replace(row, message=f"{row.message.partition(BEYOND)[0]}{BEYOND} this"))
 
 
 def _sentence(row: MemberRow) -> str:
@@ -180,7 +186,7 @@ def study_summary(study: StudyTable, seconds: float, place: str | None = None) -
         add(shown, "Note", f"{len(short) - MOST_NAMED} further members do not hold; the table has the reason of each")
     if beyond := [row for row in study.rows if row.holds is not False and BEYOND in row.message]:
         count = f"{len(beyond)} {plural('member', len(beyond))}"
-        add(shown, "Note", f"error bars of {count} leave something out. {_sentence(beyond[0])}")
+        add(shown, "Note", f"error bars of {count} leave something out. {_first_note(beyond[0])}")
     if place is not None:
         add(shown, "Written", place)
     for verdict in verdicts:

@@ -193,7 +193,7 @@ def test_other_units_change_no_answer_beyond_round_off(model, units):
     length = METERS[problem.units.length] / METERS[units[0]]
     force = NEWTONS[problem.units.force] / NEWTONS[units[1]] / length
     pressure, forces = one.pressure * force / length, np.array([*one.forces.values()]) * force
-    total = other.contact.weights @ other.pressure  # of a ring that is pressed all around the forces are zero
+    total = float(other.contact.weights @ other.pressure)  # of a ring that is pressed all around the forces are zero
     np.testing.assert_allclose(forces, [*other.forces.values()], rtol=0, atol=1e-12 * total)
     rounded = ROUNDED.get(model.stem, 1e-7) * pressure.max()
     np.testing.assert_allclose(pressure, other.pressure, rtol=0, atol=rounded)

@@ -57,7 +57,7 @@ def test_one_member_that_does_not_hold_changes_the_verdict(second: MemberRow, qu
 
 def test_the_summary_names_a_member_whose_error_bars_leave_something_out():
     """A peak that is infinite is no such thing; each is a message of a member that holds."""
-    for text in ("off; error bars do not include this", "infinite"):
+    for text in ("off; error bars do not include this; longer; error bars of it do not include this", "infinite"):
         second = row(1, MemberStatus.HOLDS, 200.0, text)
         console = Console(width=200, record=True, file=StringIO())
         console.print(study_summary(study(GOOD, second), 1.0))
