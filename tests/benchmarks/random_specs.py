@@ -137,10 +137,9 @@ def block(draw: Draw) -> Spec:
             conditions["right"] = {"fixed": True}
     match draw.randrange(4):
         case 0:
-            low, tilt = (
-                draw.choice([0, rounded(w * draw.number(1e-6, 1e-4))]),
-                draw.choice([0, draw.number(-0.01, 0.01)]),
-            )
+            held = "fixed" in conditions.get("right", {}) or "displacement" in conditions.get("left", {})
+            low = draw.choice([0, rounded(w * draw.number(1e-6, 1e-4))])
+            tilt = draw.choice([0, draw.number(-0.01, 0.01)]) if held else 0
             zones = {FLOOR: {**bottom, "surface": plane(0, -low, 90 + tilt)}}
         case 1:
             corner, drop = draw.number(-w / 3, w / 3), w * draw.number(1e-4, 0.1)
