@@ -88,7 +88,7 @@ def bore(radius: float, x: float = 0.0, y: float = 0.0, name: str = "bore") -> l
 
 def plane(x: float, y: float, angle: float = 90.0) -> Spec:
     """A plane with the normal in a direction [degrees]."""
-    normal = [rounded(cos(radians(angle)), 6), rounded(sin(radians(angle)), 6)]
+    normal = [round(cos(radians(angle)), 12), round(sin(radians(angle)), 12)]
     return {"kind": "plane", "point": [x, y], "normal": normal}
 
 
@@ -133,9 +133,14 @@ def block(draw: Draw) -> Spec:
             conditions["left"] = {"displacement": {"x": 0}}
         case 1 if "fillet" not in edges[-1]:
             conditions["left"] = conditions["right"] = {"pressure": rounded(pressure * draw.number(-1, 2))}
+        case 2 if "fillet" not in edges[-1]:
+            conditions["right"] = {"fixed": True}
     match draw.randrange(4):
         case 0:
-            zones = {FLOOR: {**bottom, "surface": plane(0, 0)}}
+            held = "fixed" in conditions.get("right", {}) or "displacement" in conditions.get("left", {})
+            low = draw.choice([0, rounded(w * draw.number(1e-6, 1e-4))])
+            tilt = draw.choice([0, draw.number(-0.01, 0.01)]) if held else 0
+            zones = {FLOOR: {**bottom, "surface": plane(0, -low, 90 + tilt)}}
         case 1:
             corner, drop = draw.number(-w / 3, w / 3), w * draw.number(1e-4, 0.1)
             points = [[-w, 0], [corner, 0], [w, rounded(-drop)]]
