@@ -56,7 +56,8 @@ bemcontact solve models/cylinder_on_plane.yaml --figure contact.svg
 ```
 
 - Pale: the bodies, with displacements to scale. Grey: hatched rigid surfaces. Dashed lines show the undeformed bodies.
-  Where the contact is small, only the part of the body around it is drawn.
+  Where the contact is small, only the part of the body around it is drawn. Of several bodies and surfaces each has its
+  name where there is room, a surface that of its contact zone.
 - Blue: supports. A model of a half or a quarter has rollers on its planes of symmetry.
 - Green: loads on the boundary, and the direction of weight.
 - Orange: the contact pressure, with its largest value in each contact, or of many contacts in one. At the edge of a

@@ -43,8 +43,8 @@ BESIDE_LINE = 1e-7
 """Least distance from a line of symmetry over the size of the body."""
 BESIDE, BESIDE_AT_START = 2**0.5, 1.7
 """Distance from contact over that from the boundary up to which a maximum is below it, and a start."""
-SHALLOW = 0.2
-"""Depth over the length of the element there up to which a maximum is one of the boundary."""
+SHALLOW, GRAZING = 0.2, 0.05
+"""Depth over the length of the element there up to which a maximum is one of the boundary, and a search ends."""
 AROUND = np.array([[x, y] for x in (0, -1, 1) for y in (0, -1, 1)], float)
 """A point and those around it, in steps."""
 LEVEL = 1e-9
@@ -238,7 +238,8 @@ class _Search:
         """Go up from points (k, 2) with first steps (k,).
 
         At a point that is larger than those around it, the parabola through them gives the next one. Of searches that
-        meet, only the highest one goes on; the value of the others is minus infinity.
+        meet, only the highest one goes on; the value of the others is minus infinity. One that has come to the boundary
+        ends there: a maximum so shallow is one of the boundary.
         """
         points, step, least = points.copy(), step.copy(), SETTLED * step
         value, inside = np.zeros(len(points)), np.zeros(len(points), bool)
@@ -258,10 +259,17 @@ class _Search:
             step[live] = np.where(best == 0, np.maximum(step[live] * SHORTER, least[live]), step[live])
             met = _met(points, value, step)
             value[met] = -np.inf
-            live = live[~at_top & ~met[live]]
+            grazes = self._grazes(points[live])
+            inside[live[grazes]] = False
+            live = live[~at_top & ~grazes & ~met[live]]
             if not len(live):
                 break
         return _Ends(self._mirrored(points), value, inside)
+
+    def _grazes(self, points: Array) -> BoolArray:
+        """Which points (k, 2) have come to the boundary, but for lines of symmetry."""
+        at = self.body.field.locate(self._mirrored(points))
+        return (at.distance <= GRAZING * self.body.field.mesh.lengths[at.element]) & ~self.mirrors[at.element]
 
     def _values(self, points: Array) -> Array:
         """Values (k,) at points (k, 2) inside the body or its mirror images; minus infinity outside."""

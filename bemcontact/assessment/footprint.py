@@ -1,7 +1,7 @@
 """Where the bodies touch: intervals of contact, the peak pressure, the resultant."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, fields
 from typing import ClassVar, NamedTuple
 
@@ -144,7 +144,7 @@ def footprint_record(footprint: Footprint) -> FootprintRecord:
     )
 
 
-def footprint(contact: CondensedContact, solution: ContactSolution, *, infinite: Sequence[str] = ()) -> Footprint:
+def footprint(contact: CondensedContact, solution: ContactSolution, *, infinite: Collection[str] = ()) -> Footprint:
     """Find contact intervals, peak and resultant of a solution of any formulation.
 
     A point touches if p/T > δ/U. The end of an interval is read off the gap, which grows like s^(3/2) beyond it: the
@@ -153,7 +153,7 @@ def footprint(contact: CondensedContact, solution: ContactSolution, *, infinite:
     half-way. Contact up to the end of a run ends at its last point, or at the node beyond it that a condition holds on
     the rigid surface. There is no peak if that of a zone is known to be infinite.
     """
-    carried = _Carried(contact, solution.pressure, infinite)
+    carried = _LoadOnPoints(contact, solution.pressure, infinite)
     return Footprint(
         intervals=tuple(
             interval
@@ -197,12 +197,12 @@ def resting_ends(contact: CondensedContact, solution: ContactSolution) -> tuple[
     return tuple(resting)
 
 
-class _Carried(NamedTuple):
+class _LoadOnPoints(NamedTuple):
     """The pressure of contact points (n,), of which stretches of contact carry parts."""
 
     contact: CondensedContact
     pressure: Array
-    infinite: Sequence[str]
+    infinite: Collection[str]
 
     def by(self, index: IntArray, zone: str) -> tuple[Pair, float, Peak | None]:
         """Force, moment and peak of some points of a zone, each of which counts once."""
@@ -274,7 +274,7 @@ def _stretches(path: _Path) -> list[tuple[int, int]]:
     return [(begin, finish) for begin, finish in zip(begins, ends, strict=True) if path.first <= begin < path.last]
 
 
-def _intervals(path: _Path, zone: str, carried: _Carried) -> list[ContactInterval]:
+def _intervals(path: _Path, zone: str, carried: _LoadOnPoints) -> list[ContactInterval]:
     """The stretches of contact of a run; a closed run in contact all around is one, from its first point."""
     if path.closed:
         return [_interval(path, zone, (path.arc[path.first], path.arc[path.last]), carried.by(path.index, zone))]

@@ -10,6 +10,7 @@ from scipy.spatial import KDTree
 
 import bemcontact
 from bemcontact import ProblemError, Result
+from bemcontact.analysis import largest_stress
 from bemcontact.analysis.stress_bars import _on_mesh
 from bemcontact.contact.stress import LargestStresses, NoPeak
 
@@ -272,3 +273,51 @@ def test_each_contact_of_a_roller_has_its_own_largest_shear():
     assert largest.shear["low"].value > 2 * largest.shear["high"].value
     assert largest.shear["beside"] is None
     assert largest.missing["shear below beside"] is NoPeak.NO_CONTACT
+
+
+def heated_strip() -> Result:
+    """A clamped strip of steel and brass, which heat bends onto a round stop: far from its ends stress is uniform."""
+
+    def layer(low: float, young_modulus: float, expansion: float) -> dict:
+        corners = [("bottom", 0, low), ("tip", 20, low), ("top", 20, low + 1), ("clamp", 0, low + 1)]
+        return {
+            "material": {"young_modulus": young_modulus, "poisson_ratio": 0.3},
+            "loads": {"temperature": {"expansion": expansion, "change": 100}},
+            "boundary": {"outer": [{"name": name, "start": [x, y]} for name, x, y in corners]},
+            "conditions": {"clamp": {"fixed": True}},
+        }
+
+    stop = {"kind": "circle", "center": [18, -2.02], "radius": 2, "body": "outside"}
+    return bemcontact.solve(bemcontact.problem({
+        "name": "strip", "accuracy": 0.1,
+        "bodies": {"steel": layer(0, 210e3, 12e-6), "brass": layer(1, 100e3, 19e-6)},
+        "bonded": {"joint": ["steel/top", "brass/bottom"]},
+        "contact_zones": {"stop": {"edges": "steel/bottom", "surface": stop}},
+    }))  # fmt: skip
+
+
+@pytest.mark.slow
+def test_searches_that_are_left_out_would_find_nothing_larger(monkeypatch: pytest.MonkeyPatch):
+    """Searches from all starts, none of which ends early, find the same maxima to less than an error bar can tell."""
+    result, counted = heated_strip(), []
+
+    def largest() -> LargestStresses:
+        counted.clear()
+        stresses = result._stresses
+        return type(stresses)(bodies=stresses.bodies, pressed=stresses.pressed).largest
+
+    climb = largest_stress._Search._climb
+
+    def counting(self, points: np.ndarray, step: np.ndarray):
+        counted.append(len(points))
+        return climb(self, points, step)
+
+    monkeypatch.setattr(largest_stress._Search, "_climb", counting)
+    few, searches = largest(), sum(counted)
+    for name, value in (("RISE", np.inf), ("AGAIN", 0.0), ("MEET", 0.0), ("GRAZING", 0.0)):
+        monkeypatch.setattr(largest_stress, name, value)
+    every = largest()
+    assert searches < sum(counted)
+    assert few.inside.value == pytest.approx(every.inside.value, rel=largest_stress.TOLD_APART)
+    assert few.shear["stop"].value == pytest.approx(every.shear["stop"].value, rel=largest_stress.TOLD_APART)
+    assert few.missing == every.missing

@@ -61,11 +61,13 @@ def pictures_of(results: Result | CaseResults, stress: StressMeasure = StressMea
         peaks, forces = figures["forces"].subplots(1, 2, sharey=True)
         draw_zone_bars(peaks, results, "peak")
         draw_zone_bars(forces, results, "force")
-    for zone in panels_of([results] if isinstance(results, Result) else [*results.results.values()]):
-        number = f"-{zones.index(zone or zones[0]) + 1}" if zone or len(zones) == 1 else ""
+    panels = panels_of([results] if isinstance(results, Result) else [*results.results.values()])
+    numbers = [f"-{zones.index(zone or zones[0]) + 1}" if zone or len(zones) == 1 else "" for zone in panels]
+    for zone, number in zip(panels, numbers, strict=True):
         if (zone or zones[0]) in near and number:
             figures[f"contact{number}"], axes = _page()
             draw_contact(axes, first, zone or zones[0], stress=stress)
+    for zone, number in zip(panels, numbers, strict=True):
         figures[f"pressure{number}"], axes = _page(height=3.6)
         if isinstance(results, CaseResults):
             draw_case_pressures(axes, results, zone)

@@ -39,8 +39,11 @@ FAR = 30.0
 """Distance of a name from its anchor, in pixels of the page, from which a line leads to it."""
 SHARES = np.linspace(0.05, 1.0, 20)
 """Shares of the way from an anchor to a name at which it must not be in another body."""
-BLOCKED = 1000.0
-"""What a way through another body adds to its length, in pixels of the page."""
+IN_BODY, LOST, ON_HATCHING, BLOCKED = 60.0, 120.0, 200.0, 1000.0
+"""What a place in a body adds to its distance, in pixels of the page, one behind a rigid line or beyond another name,
+one on hatching, and one beyond another body."""
+NEXT_BEST = 60.0
+"""Distance over the least one up to which a place may be chosen, in pixels of the page."""
 CROSSED = 20
 """Number of drawn points from which free space is better than a place across the outline of a body."""
 ON_LINE = 4.0
@@ -213,7 +216,7 @@ def place_names(
         if name.directions.any() and np.hypot(*(end - anchor)) > FAR:
             line = np.array([_to_data(axes, point) for point in (anchor, end)])
             axes.plot(*line.T, color=name.color, linewidth=0.7, alpha=0.7, zorder=5, scalex=False, scaley=False)
-            ink = np.concatenate([ink, anchor + np.linspace(0, 1, 30)[:, None] * (end - anchor)])
+            ink = np.concatenate([ink, anchor + np.linspace(0, 1, 100)[:, None] * (end - anchor)])
     return taken
 
 
@@ -240,17 +243,18 @@ def _place(
     def free(centers: Array) -> BoolArray:
         return np.array([not any(overlap(centered(center, size), box) for box in taken) for center in centers], bool)
 
-    def clear(anchors: Array, centers: Array) -> BoolArray:
+    def lost(anchors: Array, centers: Array) -> BoolArray:
         ends = _line_ends(anchors, centers, size)
         behind = _behind(grounds, anchors, centers) | _behind(grounds, anchors, ends)
-        return ~_hatched(grounds, centers, size) & ~behind & ~_leads_through(taken, anchors, ends)
+        return behind | _leads_through(taken, anchors, ends)
 
     held = _holds(frame, centers, size)
     side = held.copy()
     side[held] = _on_side(walls, anchors[held], centers[held], name.body)
     room = side & free(centers)
-    room[room] = clear(anchors[room], centers[room])
+    room[room] = ~lost(anchors[room], centers[room])
     beside = room.copy()
+    room[room] = ~_hatched(grounds, centers[room], size)
     if name.optional:
         room &= (np.abs(centers - anchors) - np.array(size) / 2).max(axis=1) < FAR
     room[room] = ~_crossed(lines, centers[room], size)
@@ -260,22 +264,22 @@ def _place(
         return None
     if name.body is None and beside.any():
         center = least(centers[beside])
-        if crowd(centered(center, size), [], ink) < CROSSED:  # it may stand across the outline of a body
+        if crowd(centered(center, size), [], ink) < CROSSED:  # it may stand on a little of what is drawn
             return center
     grid = _grid(frame, size)
-    grid = grid[free(grid) & ~_inside(walls, grid).any(axis=0)]
+    others = [loops for body, loops in enumerate(walls) if body != name.body]
+    grid = grid[free(grid) & ~_inside(others, grid).any(axis=0)]
     grid = grid[~_crossed(lines, grid, size)]
-    distances = np.hypot(*(grid[:, None] - anchors).transpose(2, 0, 1))
+    distances = np.hypot(*(grid[:, None] - anchors).transpose(2, 0, 1)).min(axis=1, initial=np.inf)
     nearest = anchors[_nearest_anchor(anchors, grid, size)]
-    distances[~clear(nearest, grid)] += BLOCKED
+    distances += IN_BODY * _inside(walls, grid).any(axis=0) + LOST * lost(nearest, grid)
+    distances += ON_HATCHING * _hatched(grounds, grid, size)
     if name.body is not None:  # a line through another body would seem to lead to that
         ways = nearest + SHARES[:, None, None] * (grid - nearest)
-        others = [loops for body, loops in enumerate(walls) if body != name.body]
-        blocked = _inside(others, ways.reshape(-1, 2)).any(axis=0).reshape(ways.shape[:2])
-        distances += BLOCKED * np.any(blocked, axis=0, keepdims=True).T
-    near = np.argsort(distances.min(axis=1, initial=np.inf), kind="stable")[:FREE_PLACES]
-    if len(near):
-        return least(grid[near])
+        distances += BLOCKED * _inside(others, ways.reshape(-1, 2)).any(axis=0).reshape(ways.shape[:2]).any(axis=0)
+    if len(grid):
+        near = np.argsort(distances, kind="stable")[:FREE_PLACES]
+        return least(grid[near[distances[near] < distances[near[0]] + NEXT_BEST]])
     for admissible in (side, held):
         if admissible.any():
             return least(centers[admissible])
