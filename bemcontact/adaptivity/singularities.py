@@ -372,12 +372,16 @@ def _turn_of_face(solved: Solved, answer: CaseAnswer, element: int, at: int) -> 
     left = np.array([-along[1], along[0]])  # into the body
     if answer.presses(element):
         pressure = answer.pressure[:, element, 1]
-        surface = [*body.problem.zones.values()][int(np.argmax(pressure))].surface
+        zone, stated = [*body.problem.zones.items()][int(np.argmax(pressure))]
+        surface = stated.surface
         other = isinstance(surface, BodySurface) and surface.elastic
         if not pressure.any() or other or isinstance(surface, DeflectedContour):
             return None
         beside = mesh.nodes[mesh.elements[element, at]] + (1 - at) * BESIDE_TIP * mesh.lengths[element] * along
-        return float(np.arcsin(cross(left, surface.closest(beside[None]).normals[0])))
+        moved = answer.condensation.contact.tools.displacement(answer.solution.rigid_amplitudes)
+        tools = zip(body.problem.tools.values(), moved.tolist(), strict=True)
+        turn = sum(motion[2] for tool, motion in tools if zone in tool.zones)
+        return turn + float(np.arcsin(cross(left, surface.closest(beside[None]).normals[0])))
     held = body.acting.values.traction_unknown[element]
     if (held.sum() == 1) and abs(left[~held]).max() <= STRAIGHT:
         u = body.acting.values.displacement[mesh.elements[element]] @ left

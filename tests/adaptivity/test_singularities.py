@@ -188,19 +188,22 @@ def test_beside_a_held_face_a_tilt_is_a_corner_of_twice_its_angle():
     assert on_meshes[1] - on_meshes[0] == pytest.approx(each, rel=0.02)
 
 
-@pytest.mark.parametrize("held", ["face", "wall", "turned"])
+@pytest.mark.parametrize("held", ["face", "wall", "turned", "tool"])
 @pytest.mark.parametrize(("slope", "accuracy", "infinite"), [(2e-4, 0.05, True), (2e-5, 0.01, True),
                                                             (2e-5, 0.1, False), (-2e-4, 0.01, False)])  # fmt: skip
 def test_a_tilt_beside_a_held_face_or_a_wall_is_told_or_in_the_bar(
     held: str, slope: float, accuracy: float, infinite: bool
 ):
-    """Also where displacements that are prescribed turn the face, and the plane is level."""
+    """Also where displacements that are prescribed turn the face, or the plane, which is drawn level."""
     conditions: dict[str, dict[str, object]] = {
         "face": {"displacement": {"x": 0}},
         "wall": {},
         "turned": {"displacement": {"x": {"constant": 0, "y": -slope}}},
+        "tool": {"displacement": {"x": 0}},
     }
-    problem = on_a_tilt(0.0 if held == "turned" else slope, accuracy, conditions[held])
+    drawn = on_a_tilt(0.0 if held in ("turned", "tool") else slope, accuracy, conditions[held])
+    turns = {"floor": {"zones": "floor", "point": [0, 0], "displacement": {"x": 0, "y": 0, "rotation": -slope}}}
+    problem = Problem.model_validate({**drawn.to_dict(), "tools": turns}) if held == "tool" else drawn
     (found,) = meshed(problem).accuracies
     assert found.met
     peaks = [bar for bar in found.bars if bar.quantity == "peak" and bar.zone in ("floor", None)]
