@@ -368,7 +368,8 @@ def _turn_of_face(solved: Solved, answer: CaseAnswer, element: int, at: int) -> 
     `at` is its local node there. None for an end that is free to turn, that shear acts on, or on another elastic body.
     """
     mesh, body = solved.mesh, solved.body
-    along = mesh.tangents[element, at] / np.hypot(*mesh.tangents[element, at])
+    edge = body.problem.edge(mesh.edge_names[mesh.edge[element]])  # elements turn a little beside a curve
+    along = edge.directions(mesh.fractions[element, [at]])[0]
     left = np.array([-along[1], along[0]])  # into the body
     if answer.presses(element):
         pressure = answer.pressure[:, element, 1]

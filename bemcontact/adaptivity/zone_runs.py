@@ -13,6 +13,7 @@ from bemcontact.bem.contact_points import ALIKE
 from bemcontact.bem.mesh import CORNER
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.problems.body_surface import BodyZone
 from bemcontact.problems.curves import Edge
 from bemcontact.serialization import Pair
 
@@ -130,11 +131,15 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
 
 
 def _held_off(body: Body) -> dict[int, set[int]]:
-    """Nodes of each zone that conditions hold off the surface, by its number; not those beside tools that are free."""
-    held, gap = body.points.held, body.held_gaps
-    off = {number: set[int]() for number in range(len(body.problem.zones))}
+    """Nodes of each zone that conditions hold off the surface, by its number.
+
+    Those beside a tool that is free, or another elastic body, may come to touch.
+    """
+    held, gap, zones = body.points.held, body.held_gaps, [*body.problem.zones.values()]
+    off = {number: set[int]() for number in range(len(zones))}
     if held is not None:
-        open_ = (gap > ALIKE * body.mesh.size) & np.isfinite(gap)
+        rigid = np.array([not (isinstance(zone, BodyZone) and zone.surface.elastic) for zone in zones])
+        open_ = (gap > ALIKE * body.mesh.size) & np.isfinite(gap) & rigid[held.zone]
         for zone, node in zip(held.zone[open_].tolist(), held.node[open_].tolist(), strict=True):
             off[zone].add(node)
     return off
