@@ -51,9 +51,10 @@ class Opposite(NamedTuple):
 class ContactPoints:
     """Candidates for contact, zone by zone, run by run, along the boundary.
 
-    A node is no candidate if a condition prescribes its motion along the rigid normal; its pressure is zero. Contact
-    may continue smoothly beyond such a node, as at the tip of a closed slit. The end node then has the pressure of the
-    middle node of the element, whose tributary length includes that of the end node.
+    A node is no candidate if a condition prescribes its motion along the normal, and that of the other body if this is
+    elastic; its pressure is zero. Contact may continue smoothly beyond such a node, as at the tip of a closed slit. The
+    end node then has the pressure of the middle node of the element, whose tributary length includes that of the end
+    node.
 
     So it is where a bond begins. The gap of this node is zero whatever the pressure is, so that it would be no unknown
     of a complementarity problem with one solution. The traction of the bond is another one, on its own elements: beside
@@ -272,7 +273,9 @@ def contact_points(
             gap, normals, lies = faces.along(nodes, closed=closed)
             opposite = _along(across, nodes, closed=closed)
             bonded = (opposite >= 0) & (tied[nodes] == tied[opposite])
-            loose = ~_held_along(normals, values.displacement_given[nodes]) & ~bonded
+            given = values.displacement_given
+            across_held = (opposite < 0) | _held_along(normals, given[opposite])  # else the other body comes up to it
+            loose = ~(_held_along(normals, given[nodes]) & across_held) & ~bonded
             free = loose & ~(choice[nodes] & ~faces.turned(mesh, elements, closed=closed))
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
             fixed = not closed and name not in tool_of and not other

@@ -365,6 +365,19 @@ def test_nothing_spins_a_disk_without_friction(modulus, springs, exchanged):
         assert abs(result.footprint.moments[contact.zone] + 2 * x) < 0.01 * farthest
 
 
+def test_a_body_may_press_on_a_corner_that_is_held():
+    """Either side first. Both have the same force and length; the corner of the clamped side takes part."""
+    upper = elastic(block((0, 40), (0, 20)), {"top": {"pressure": 30.0}, "right": {"fixed": True}}, 30e3)
+    lower = elastic(block((-10, 60), (-20, -2e-4)), {"bottom": {"displacement": {"x": 0, "y": 0.02}}}, 30e3)
+    forces = []
+    for pair in (["up/bottom", "low/top"], ["low/top", "up/bottom"]):
+        result = solved({"up": upper, "low": lower}, 0.01, c=pair)
+        assert result.certified
+        assert result.intervals[0].length == pytest.approx(40, rel=1e-9)
+        forces.append(abs(result.footprint.forces["c"][1]))
+    assert forces[0] == pytest.approx(forces[1], rel=1e-6)
+
+
 @pytest.mark.slow
 def test_a_roller_on_a_block_that_hardly_deforms_is_that_on_a_plane():
     """It may spin on both. Normals are those of the block but for the twentieth that holds the roller on it."""
