@@ -48,7 +48,7 @@ SHARP = 1e-4
 """Rounding of a corner over the contact up to which its pressure must be right."""
 STRAIGHT = 1e-9
 """Angle of a kink that is none [rad]."""
-BESIDE_TIP = 1e-6
+BESIDE_TIP = 1e-9
 """Distance from an end of an element, over its length, at which a surface that may have a corner is looked at."""
 SAME = 1e-6
 """Distance of two places over the length of their run up to which they are one."""

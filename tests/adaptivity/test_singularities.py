@@ -8,8 +8,16 @@ import pytest
 from debonds import PRESSURE, halves
 
 from bemcontact.adaptivity.adapt import meshed
-from bemcontact.adaptivity.fields import solved
-from bemcontact.adaptivity.singularities import ContactPlace, Singularity, Watch, _History, _nearest, _slope
+from bemcontact.adaptivity.fields import MeshDifference, solved
+from bemcontact.adaptivity.singularities import (
+    ContactPlace,
+    Singularity,
+    Watch,
+    _History,
+    _nearest,
+    _places,
+    _slope,
+)
 from bemcontact.problems import Problem
 from bemcontact.spec import load
 
@@ -186,6 +194,31 @@ def test_beside_a_held_face_a_tilt_is_a_corner_of_twice_its_angle():
     on_meshes = [float(solved(on_a_tilt(slope, None, held, count)).answers[0].pressure[0].max()) for count in (60, 120)]
     each = _slope(solved(on_a_tilt(0.0, None, held, 4)), 2 * slope, 0) * np.log(2)
     assert on_meshes[1] - on_meshes[0] == pytest.approx(each, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "surface",
+    [
+        {"kind": "plane", "point": [0, 0], "normal": [0, 1]},
+        {"kind": "circle", "center": [0, -30], "radius": 30, "body": "outside"},
+    ],
+)
+def test_half_of_a_round_body_has_no_kink_on_its_axis(surface: dict[str, object]):
+    """Elements turn a little beside a curve, here by a thousandth; the curve meets its axis at a right angle."""
+    half = Problem.model_validate({
+        "name": "half", "material": {"young_modulus": 1000, "poisson_ratio": 0.3},
+        "boundary": {"outer": [
+            {"name": "rim", "kind": "arc", "center": [0, 10], "radius": 10, "angles": [-90, 90], "elements": 12},
+            {"name": "axis", "elements": 8},
+        ]},
+        "conditions": {"axis": {"symmetry": "x"}},
+        "loads": {"gravity": {"density": 1.0, "acceleration": [0, -0.5]}},
+        "contact_zones": {"floor": {"edges": "rim", "surface": surface}},
+    })  # fmt: skip
+    coarse = solved(half)
+    fine = solved(half.with_value("mesh.refine", 2))
+    places = [*_places(MeshDifference(coarse=coarse, fine=fine, number=0))]
+    assert [place.kink for place in places if place.end] == [0.0]
 
 
 @pytest.mark.parametrize("held", ["face", "wall", "turned", "tool"])
