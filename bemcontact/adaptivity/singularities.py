@@ -18,10 +18,8 @@ from bemcontact.adaptivity.wedge_exponents import (
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
 from bemcontact.bem.mesh import CORNER
-from bemcontact.problems.body_surface import BodySurface
 from bemcontact.problems.curves import cross
 from bemcontact.problems.nearest_places import surface_corners
-from bemcontact.problems.rigid_surface import DeflectedContour
 
 GROWING = 1.04, 1.9
 """Growth of the pressure at a place by bisection between which it may be infinite."""
@@ -48,8 +46,6 @@ SHARP = 1e-4
 """Rounding of a corner over the contact up to which its pressure must be right."""
 STRAIGHT = 1e-9
 """Angle of a kink that is none [rad]."""
-BESIDE_TIP = 1e-9
-"""Distance from an end of an element, over its length, at which a surface that may have a corner is looked at."""
 SAME = 1e-6
 """Distance of two places over the length of their run up to which they are one."""
 
@@ -372,17 +368,16 @@ def _turn_of_face(solved: Solved, answer: CaseAnswer, element: int, at: int) -> 
     along = edge.directions(mesh.fractions[element, [at]])[0]
     left = np.array([-along[1], along[0]])  # into the body
     if answer.presses(element):
-        pressure = answer.pressure[:, element, 1]
-        zone, stated = [*body.problem.zones.items()][int(np.argmax(pressure))]
-        surface = stated.surface
-        other = isinstance(surface, BodySurface) and surface.elastic
-        if not pressure.any() or other or isinstance(surface, DeflectedContour):
+        points = body.points
+        there = (points.element == element) & (points.local == at)
+        number = points.point[there & (points.node[points.point] == mesh.elements[element, at])]
+        if not len(number) or points.opposite.node[number[0]] >= 0:
             return None
-        beside = mesh.nodes[mesh.elements[element, at]] + (1 - at) * BESIDE_TIP * mesh.lengths[element] * along
+        zone = [*body.problem.zones][points.zone[number[0]]]
         moved = answer.condensation.contact.tools.displacement(answer.solution.rigid_amplitudes)
         tools = zip(body.problem.tools.values(), moved.tolist(), strict=True)
         turn = sum(motion[2] for tool, motion in tools if zone in tool.zones)
-        return turn + float(np.arcsin(cross(left, surface.closest(beside[None]).normals[0])))
+        return turn + float(np.arcsin(cross(left, points.faces[number[0]])))
     held = body.acting.values.traction_unknown[element]
     if (held.sum() == 1) and abs(left[~held]).max() <= STRAIGHT:
         u = body.acting.values.displacement[mesh.elements[element]] @ left

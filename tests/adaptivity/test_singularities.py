@@ -221,7 +221,7 @@ def test_half_of_a_round_body_has_no_kink_on_its_axis(surface: dict[str, object]
     assert [place.kink for place in places if place.end] == [0.0]
 
 
-@pytest.mark.parametrize("held", ["face", "wall", "turned", "tool"])
+@pytest.mark.parametrize("held", ["face", "wall", "groove", "turned", "tool"])
 @pytest.mark.parametrize(("slope", "accuracy", "infinite"), [(2e-4, 0.05, True), (2e-5, 0.01, True),
                                                             (2e-5, 0.1, False), (-2e-4, 0.01, False)])  # fmt: skip
 def test_a_tilt_beside_a_held_face_or_a_wall_is_told_or_in_the_bar(
@@ -231,12 +231,17 @@ def test_a_tilt_beside_a_held_face_or_a_wall_is_told_or_in_the_bar(
     conditions: dict[str, dict[str, object]] = {
         "face": {"displacement": {"x": 0}},
         "wall": {},
+        "groove": {},
         "turned": {"displacement": {"x": {"constant": 0, "y": -slope}}},
         "tool": {"displacement": {"x": 0}},
     }
     drawn = on_a_tilt(0.0 if held in ("turned", "tool") else slope, accuracy, conditions[held])
     turns = {"floor": {"zones": "floor", "point": [0, 0], "displacement": {"x": 0, "y": 0, "rotation": -slope}}}
-    problem = Problem.model_validate({**drawn.to_dict(), "tools": turns}) if held == "tool" else drawn
+    groove = {"kind": "polyline", "points": [[0, 30], [0, 0], [60, -60 * slope]]}
+    more: dict[str, dict[str, object]] = {
+        "tool": {"tools": turns}, "groove": {"contact_zones": {"floor": {"edges": ["left", "bottom"], "surface": groove}}}
+    }  # fmt: skip
+    problem = Problem.model_validate({**drawn.to_dict(), **more.get(held, {})})
     (found,) = meshed(problem).accuracies
     assert found.met
     peaks = [bar for bar in found.bars if bar.quantity == "peak" and bar.zone in ("floor", None)]
