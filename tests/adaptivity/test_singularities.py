@@ -239,7 +239,8 @@ def test_a_tilt_beside_a_held_face_or_a_wall_is_told_or_in_the_bar(
     turns = {"floor": {"zones": "floor", "point": [0, 0], "displacement": {"x": 0, "y": 0, "rotation": -slope}}}
     groove = {"kind": "polyline", "points": [[0, 30], [0, 0], [60, -60 * slope]]}
     more: dict[str, dict[str, object]] = {
-        "tool": {"tools": turns}, "groove": {"contact_zones": {"floor": {"edges": ["left", "bottom"], "surface": groove}}}
+        "tool": {"tools": turns},
+        "groove": {"contact_zones": {"floor": {"edges": ["left", "bottom"], "surface": groove}}},
     }  # fmt: skip
     problem = Problem.model_validate({**drawn.to_dict(), **more.get(held, {})})
     (found,) = meshed(problem).accuracies
