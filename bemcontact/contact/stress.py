@@ -1,7 +1,7 @@
 """Stress at points of a body, along its edges and all over it, what is derived from its components, and its peaks."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 from typing import ClassVar
@@ -60,7 +60,7 @@ class Stress(WithHints):
     """σzz (k,) [p]: ν (σxx + σyy) - E α ΔT in plane strain, zero in plane stress."""
     kind: NDArray[np.str_]
     """A `PointKind` for each point: "inside", "boundary", "corner", or "singular", where stress is not a number."""
-    labels: Labels = Labels()
+    labels: Labels = field(default_factory=Labels)
     """Labels of units."""
 
     def __len__(self) -> int:
@@ -152,7 +152,7 @@ class EdgeStress(WithHints):
     """Arc length [L] from the start of the edge to it."""
     singular: Array
     """Ends of elements (s, 2) [L] where stress is infinite. The peak is away from their elements."""
-    labels: Labels = Labels()
+    labels: Labels = field(default_factory=Labels)
     """Labels of units."""
 
     def __repr__(self) -> str:
@@ -212,7 +212,7 @@ class LargestStresses(WithHints):
     """Why there is no largest stress, by the words of its row: shear below each zone, inside and on the boundary."""
     singular: Array
     """Places (s, 2) [L] where stress is infinite: the body has no largest stress if there are any."""
-    labels: Labels = Labels()
+    labels: Labels = field(default_factory=Labels)
     """Labels of units."""
 
     def __repr__(self) -> str:
