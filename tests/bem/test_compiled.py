@@ -37,7 +37,7 @@ BODIES = MESHES | {
 }
 
 MODELS = Path(__file__).parents[2] / "models"
-OF_ONE_BODY = [path for path in sorted(MODELS.rglob("*.yaml")) if path.parent.name != "bodies"]
+OF_ONE_BODY = [path for path in sorted(MODELS.rglob("*.yaml")) if "\nbodies:" not in path.read_text(encoding="utf-8")]
 SHIPPED = [path.relative_to(MODELS).with_suffix("").as_posix() for path in OF_ONE_BODY]
 
 
