@@ -48,7 +48,7 @@ class ZoneRun:
     breakpoints: tuple[Array, ...]
     turn: Array
     beside: tuple[Edge, ...]
-    off: tuple[bool, bool] = (False, False)
+    off: tuple[bool, ...] = (False, False)
 
     @property
     def length(self) -> float:
@@ -126,7 +126,7 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
             breakpoints=breakpoints,
             turn=_turns(edges, closed=closed),
             beside=() if closed else tuple(problem.edge(mesh.edge_names[mesh.edge[i]]) for i in outside),
-            off=(int(elements[0]) in off[points.zone_of_run[number]], outside[1] in off[points.zone_of_run[number]]),
+            off=tuple(node in off[points.zone_of_run[number]] for node in (int(elements[0]), int(outside[1]))),
         )
 
 
@@ -197,9 +197,8 @@ def contact_stretches(
             start_arc = min(start_arc, (arcs[first] + arcs[max(first - 1, 0)]) / 2)
             end_arc = max(end_arc, (arcs[last] + arcs[min(last + 1, len(arcs) - 1)]) / 2)
         corners = first < last  # a single point at a corner does not decide on which side contact is
-        at_start = (
-            first == 0 and not run.off[0] and arcs[first] <= run.arc[1] + same
-        )  # else points beyond are not turned to the surface
+        # where the last point is no end of contact, points beyond are held off the surface or not turned to it
+        at_start = first == 0 and not run.off[0] and arcs[first] <= run.arc[1] + same
         start, start_free = _end(run, start_arc, arcs[first], 0.0 if at_start else None, corners)
         at_end = last == len(arcs) - 1 and not run.off[1] and arcs[last] >= run.arc[-2] - same
         end, end_free = _end(run, end_arc, arcs[last], run.length if at_end else None, corners)

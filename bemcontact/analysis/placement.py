@@ -295,8 +295,8 @@ def _moves_on(
 
     A flat block slides on a round support, whose normals are tilted beside the place where it touches. It would move
     until the tilt balances the load, but takes the place of contact with it. So does a disc that a couple rolls along
-    a plane: it would turn until the lever of the pressure balances the couple. A motion that no load
-    drives, and that is small beside every contact, may be noise of the mesh, and places nothing elsewhere.
+    a plane: it would turn until the lever of the pressure balances the couple. A motion that no load drives, and
+    that is small beside every contact, may be noise of the mesh, and places nothing elsewhere.
     """
     if again.status is not Status.SOLVED or not contact.free_motions:
         return None

@@ -66,7 +66,6 @@ class Body:
     motions : of each elastic body, all rigid motions that the conditions leave free
     seen : motions of bodies and tools, and combinations, that move contact points along the rigid normals
     unseen : the other free motions, which change no gap
-    spins : rotations of bodies around their centers that no pressure drives
     bonds : nodes of bonded bodies, which seen and unseen motions leave together, and bodies that these do not spin
     apart : motions of elastic bodies that would not
     """
@@ -80,7 +79,6 @@ class Body:
     motions: tuple[RigidMotions, ...]
     seen: FreeMotions
     unseen: FreeMotions
-    spins: FreeMotions
     bonds: BondedPoints
     apart: FreeMotions
 
@@ -150,7 +148,13 @@ class Body:
         total = [self.pinned.total(alone, self.tools.force * alone) for alone in unit]
         return np.where(abs(work) > BALANCED * np.array(total), work, 0.0)
 
-    @property
+    @cached_property
+    def spins(self) -> FreeMotions:
+        """Rotations of bodies about their centers that no pressure drives."""
+        centers = self.problem.spin_centers
+        return self.seen.rotations([centers.get(part.name) for part in self.problem.parts])
+
+    @cached_property
     def pinned_motions(self) -> FreeMotions:
         """The motions that nothing determines: those that change no gap, and spins."""
         return replace(self.unseen, coefficients=np.vstack([self.unseen.coefficients, self.spins.coefficients]))
@@ -336,11 +340,9 @@ def body_of(problem: Problem) -> Body:
     names = tuple(f"the body '{part.name}'" for part in problem.parts) if problem.several else (BODY,)
     bonds = BondedPoints.of(problem, mesh, permanent.values)
     seen, unseen, apart = free_motions(points, motions, tools, names, bonds)
-    centers = [problem.spin_centers.get(part.name) for part in problem.parts]
-    spins = replace(seen, coefficients=seen.spins(centers))
     body = Body(
         problem=problem, mesh=mesh, outline=outline, points=points, loadings=(permanent, *cases), tools=tools,
-        motions=motions, seen=seen, unseen=unseen, spins=spins, bonds=bonds, apart=apart,
+        motions=motions, seen=seen, unseen=unseen, bonds=bonds, apart=apart,
     )  # fmt: skip
     if problem.case is not None or not problem.load_cases:
         ensure_held(body)

@@ -115,8 +115,9 @@ def _spins(problem: Problem, mesh: Mesh) -> Iterator[tuple[tuple[IntArray, IntAr
 
     They are elements, local nodes and tractions (q, 2); nodes and their parts (r, 2) in the motion.
     """
+    centers = problem.spin_centers
     for part, (on_mesh, elements, nodes) in zip(problem.parts, mesh.parts, strict=True):
-        if (center := problem.spin_centers.get(part.name)) is not None:
+        if (center := centers.get(part.name)) is not None:
             x, y = (on_mesh.nodes - center).T
             lengths = np.bincount(on_mesh.elements.ravel(), on_mesh.tributary.ravel())
             around = np.column_stack([-y, x]) / np.hypot(x, y).max()

@@ -165,11 +165,11 @@ def condense_together(bodies: Sequence[Body]) -> CondensedTogether:
 
 def matrix_of(body: Body) -> tuple[object, ...]:
     """What the matrix of a body and its unit pressures depend on; equal for bodies that can be condensed together."""
-    values, points = body.loadings[0].values, body.points
+    values, points, bonds = body.loadings[0].values, body.points, body.bonds
     arrays = (
         body.mesh.nodes, body.mesh.elements, body.mesh.edge, body.mesh.part, values.displacement_given,
         values.traction_unknown, values.stiffness, points.node, points.normals, points.element, points.local,
-        points.point, points.sense, points.opposite.traction, *points.moved,
+        points.point, points.sense, points.opposite.traction, *points.moved, bonds.component, bonds.tractions,
     )  # fmt: skip
     materials = [part.material.model_dump_json() for part in body.problem.parts]
     return (*materials, *((array.shape, array.tobytes()) for array in arrays))

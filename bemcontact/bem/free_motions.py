@@ -207,14 +207,14 @@ class FreeMotions:
         part = self._moving(motion)[0]
         return replace(self, coefficients=np.eye(self.coefficients.shape[1])[3 * part : 3 * part + 2])
 
-    def spins(self, centers: Sequence[Point | None]) -> Array:
-        """Coefficients (k, 3 b + 3 t) of rotations of each body about a center [L], if it is given one."""
+    def rotations(self, centers: Sequence[Point | None]) -> "FreeMotions":
+        """Rotation of each body about a center [L], if it is given one."""
         rows = np.zeros((len(centers), self.coefficients.shape[1]))
         for number, center in enumerate(centers):
             if center is not None:
                 x, y = (np.array(center) - self.centers[number]) / self.radius
                 rows[number, 3 * number : 3 * number + 3] = y, -x, 1.0
-        return rows[rows.any(axis=1)]
+        return replace(self, coefficients=rows[rows.any(axis=1)])
 
     def turns(self, motion: int) -> bool:
         """Whether something turns in a motion."""

@@ -588,7 +588,7 @@ def test_a_soft_roller_that_may_spin_has_the_normals_of_a_stiff_body(density):
 def test_a_free_ring_in_a_groove_presses_on_its_walls_as_half_of_it_does(squeeze):
     """The squeeze moves its middle down along both walls, by as much as their contacts are long.
 
-    With normals of its own the walls would have twice the force. A twentieth of them is left, which a note tells.
+    With normals of its own the walls would have twice the force. A twentieth of that is left, which a note tells.
     """
     gap = 0.2 * squeeze + (0.0 if squeeze > 0.1 else -0.004)
     wall, symmetry = 2.5 + gap, {"symmetry": "x"}
@@ -632,6 +632,6 @@ def test_a_free_ring_in_a_groove_presses_on_its_walls_as_half_of_it_does(squeeze
     whole, on_wall, on_floor = solved(-8, [-90, 270], [], held=False)
     _, half_on_wall, half_on_floor = solved(0, [-90, 90], [{"name": "axis"}], held=True)
     assert on_floor == pytest.approx(2 * half_on_floor, rel=0.005)
-    assert on_wall == pytest.approx(half_on_wall, rel=0.03)
+    assert on_wall == pytest.approx(half_on_wall, rel=0.05)
     if squeeze > 0.1:
         assert any("both sides of 'groove' move by" in note for note in whole.notes)
