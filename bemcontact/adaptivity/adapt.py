@@ -178,7 +178,7 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
                 reason = f"a finer mesh would have more than {MOST_UNKNOWNS} unknowns"
                 break
             progress(f"{start}, {2 * coarse.degrees_of_freedom} unknowns")
-            fine = search.solve(2)
+            fine = search.bisected(coarse)
         except SolverError as error:
             reason = str(error)
             if best is not None or number > MOST_FAILURES:
@@ -213,7 +213,7 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
         search.layers = search.with_counts(search.ends_of_contact(fine)[0])
         search.refine(differences, singular)
     if best is None:
-        coarsest = search.mesh(1)
+        coarsest = search.mesh()
         return _unsolved(coarsest, condensed(coarsest), asked, reason)
     return best.because(reason)
 

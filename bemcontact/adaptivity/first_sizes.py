@@ -36,7 +36,7 @@ MOST_HALVINGS = 40
 """Halvings of the part of an edge with its sharpest bend, in the search for how sharp it is."""
 LEAST_SAMPLES = 24
 """Samples of an edge."""
-IN_CACHE = 64
+IN_CACHE = 32
 """Samples that are compared with all others at once."""
 FLAT = 1e-4
 """Step over the length of an edge by which the curvature of the gap is measured."""
@@ -99,14 +99,16 @@ class SizedOutline:
         least, across = [], []
         for few in range(0, len(x), IN_CACHE):
             rows = slice(few, few + IN_CACHE)
-            right, up = x[rows, None] - x, y[rows, None] - y
+            opposed = normals[rows] @ normals.T < OPPOSED
+            there = np.append(np.flatnonzero(opposed.any(axis=0)), 0)
+            right, up = x[rows, None] - x[there], y[rows, None] - y[there]
             inward = right * normals[rows, :1] + up * normals[rows, 1:]
             squared = right**2 + up**2
-            faces = (inward > 0) & (inward**2 >= ACROSS**2 * squared) & (normals[rows] @ normals.T < OPPOSED)
+            faces = (inward > 0) & (inward**2 >= ACROSS**2 * squared) & opposed.take(there, axis=1)
             if len({*self.bodies}) > 1:
-                faces &= body[rows, None] == body
-            squared[~faces] = np.inf
-            across.append(np.argmin(squared, axis=1))
+                faces &= body[rows, None] == body[there]
+            np.putmask(squared, ~faces, np.inf)
+            across.append(there[np.argmin(squared, axis=1)])
             least.append(np.sqrt(squared.min(axis=1)))
         both = touching & touching[np.concatenate(across)]
         joints = np.cumsum([len(own) for own in self.positions])[:-1]
@@ -120,15 +122,14 @@ class SizedOutline:
     def sizes(self, loop: int) -> Iterator[Limit]:
         """Limits of the element size along a loop that do not depend on what it touches."""
         own = self.loops[loop]
-        for edge, start, stop in zip(own.edges, own.joints[:-1], own.joints[1:], strict=True):
+        for edge, start, stop in zip(own.edges, own.joints[:-1].tolist(), own.joints[1:].tolist(), strict=True):
             yield Limit(low=start, high=stop, size=PART * edge.length)
             yield from _curvature(edge, start)
         thickness, both = self._walls
-        for position, least, pressed in zip(self.positions[loop], thickness[loop], both[loop], strict=True):
-            if np.isfinite(least):
-                yield Limit(low=position, high=position, size=float(least * WALL if pressed else least))
-        known = [*_least_at_joints(own, self.positions[loop], self.thickness[loop])]
-        yield from known
+        sizes, positions = np.where(both[loop], thickness[loop] * WALL, thickness[loop]), self.positions[loop]
+        for position, size in np.column_stack([positions, sizes])[np.isfinite(sizes)].tolist():
+            yield Limit(low=position, high=position, size=size)
+        yield from _least_at_joints(own, positions, thickness[loop])
 
 
 def sized_outline(problem: Problem) -> SizedOutline:
@@ -154,15 +155,15 @@ def _curvature(edge: Edge, start: float) -> Iterator[Limit]:
             break
         at = np.insert(at, bends + 1, (at[bends] + at[bends + 1]) / 2)
         angle = edge.curve.tangent_angle(at)
-    for (low, high), turn in zip(pairwise(at), np.abs(np.diff(angle)), strict=True):
+    for (low, high), turn in zip(pairwise(at.tolist()), np.abs(np.diff(angle)).tolist(), strict=True):
         if turn > 0:
             size = (high - low) * edge.length / turn * TURN
-            yield Limit(low=start + low * edge.length, high=start + high * edge.length, size=float(size))
+            yield Limit(low=start + low * edge.length, high=start + high * edge.length, size=size)
 
 
 def _least_at_joints(loop: Loop, positions: Array, thickness: Array) -> Iterator[Limit]:
     """Half of the size at corners."""
-    for before, after, position in zip((loop.edges[-1], *loop.edges), loop.edges, loop.joints, strict=False):
+    for before, after, position in zip((loop.edges[-1], *loop.edges), loop.edges, loop.joints.tolist(), strict=False):
         turn = after.curve.tangent_angle(np.zeros(1))[0] - before.curve.tangent_angle(np.ones(1))[0]
         if abs((turn + pi) % (2 * pi) - pi) > CORNER:
             away = np.abs(positions - position)

@@ -9,7 +9,7 @@ from bemcontact.adaptivity.error_bars import SAFETY, near_singularities
 from bemcontact.adaptivity.fields import MeshDifference, Solved, most_of, norm_squared, penetrations, solved
 from bemcontact.adaptivity.first_sizes import SizedOutline
 from bemcontact.adaptivity.hidden_changes import hiding
-from bemcontact.adaptivity.mesh_sizes import ContactEnd, MeshSizes, as_of_one, useful_limits
+from bemcontact.adaptivity.mesh_sizes import ContactEnd, MeshSizes, as_of_one, cut, useful_limits
 from bemcontact.adaptivity.singularities import Singularity, Watch, elements_at
 from bemcontact.adaptivity.sizes import OUTSIDE, Limit
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
@@ -51,9 +51,9 @@ class MeshSearch(MeshSizes):
     last: Solved | None = None
     """The answer on the mesh before, where the search for contact starts."""
 
-    def solve(self, refine: int) -> Solved:
-        """Solve on that mesh, under each load case."""
-        return self._solve_on(self.mesh(refine))
+    def bisected(self, coarse: Solved) -> Solved:
+        """Solve with every element of a mesh in two, under each load case."""
+        return self._solve_on(cut(coarse.body.problem, 2))
 
     def _solve_on(self, mesh: Problem) -> Solved:
         self.last = solved(mesh, self.last)
@@ -65,7 +65,7 @@ class MeshSearch(MeshSizes):
 
     def fitted(self, most: int, tell: Callable[[int], object]) -> Solved:
         """Solve on meshes of up to `most` unknowns, fitted to the ends of contact until these rest; tell unknowns."""
-        coarse = self.solve(1)
+        coarse = self._solve_on(self.mesh())
         for count in range(NARROW_REFITS):
             tell(coarse.degrees_of_freedom)
             ends, spots = self.ends_of_contact(coarse)
@@ -79,7 +79,7 @@ class MeshSearch(MeshSizes):
             self.spots = spots
             for number, limit in between:
                 self.sources[number].append(limit)
-            mesh = self.mesh(1)
+            mesh = self.mesh()
             if as_of_one(4 * sum(edge.elements or 0 for edge in part.edges) for part in mesh.parts) > most:
                 return coarse
             coarse = self._solve_on(mesh)

@@ -84,14 +84,14 @@ class MeshSizes:
         kept = problem.model_copy(update={"accuracy": problem.asked_accuracy})
         return cls(problem=kept, outline=shape, sources=limits, marks=marks, facing=facing)
 
-    def mesh(self, refine: int) -> Problem:
-        """The problem with elements as the sources ask, cut into equal parts."""
+    def mesh(self) -> Problem:
+        """The problem with elements as the sources ask."""
         ends = self._ends()
         if (total := sum(len(own) + 1 for own in ends.values())) > MOST_ELEMENTS:
             needed = f"a mesh of this body needs {total} elements, more than {MOST_ELEMENTS}"
             message = f"{needed}: it is too slender, or has too small parts; check its coordinates, or state elements"
             raise ProblemError(Issue(path=("boundary",), message=message))
-        return cut(self.problem.with_element_ends(ends), refine)
+        return cut(self.problem.with_element_ends(ends), 1)
 
     def _ends(self) -> dict[str, tuple[float, ...]]:
         """Fractions of the length of each edge where elements end inside it.
@@ -123,7 +123,7 @@ class MeshSizes:
 
 def first_mesh(problem: Problem) -> Problem:
     """The problem on the first mesh, from the geometry alone and the elements that are stated."""
-    return MeshSizes.of(problem).mesh(1)
+    return MeshSizes.of(problem).mesh()
 
 
 def between_marks(loop: Loop, marks: Sequence[float]) -> Iterator[Limit]:

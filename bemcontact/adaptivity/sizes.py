@@ -26,7 +26,8 @@ RESOLUTION = 0.5
 """Largest step of the samples of the size, over the size."""
 SAME = 1e-9
 """Relative difference of two lengths below which round-off decides which one is longer."""
-
+IN_CACHE = 64
+"""Positions that are compared with all limits at once."""
 NEAREST = 1e-9
 """Least element over its edge: ten times the least that an edge can be divided into."""
 
@@ -97,12 +98,16 @@ class Loop:
 
     def size_at(self, positions: Array, limits: Array, layers: Sequence[Layers]) -> Array:
         """Element size (k,) at positions (k,): the least that any limit, a row of (l, 3), and the layers allow."""
-        if not len(positions):
-            return np.zeros(0)
-        low, high, size = limits.T
-        offset = self._forwards(positions[:, None] - low)
-        beyond = np.maximum(np.minimum(offset - (high - low), self.length - offset), 0.0)
-        least = np.min(size + self.growth * beyond, axis=1)
+        (low, high, size), least = limits.T, np.empty(len(positions))
+        for first in range(0, len(positions), IN_CACHE):
+            some = slice(first, first + IN_CACHE)
+            offset = self._forwards(positions[some, None] - low)
+            beyond = self.length - offset
+            np.minimum(beyond, np.subtract(offset, high - low, out=offset), out=beyond)
+            np.maximum(beyond, 0.0, out=beyond)
+            beyond *= self.growth
+            beyond += size
+            beyond.min(axis=1, out=least[some])
         for layer in layers:
             offset = self._forwards(positions - layer.position)
             after = offset <= self.length / 2
@@ -112,7 +117,7 @@ class Loop:
     def _forwards(self, offset: Array) -> Array:
         """Distances forwards along the loop [L]: differences of positions modulo its length."""
         length = self.length
-        if offset.min() >= -length and offset.max() < length:
+        if offset.min(initial=0.0) >= -length and offset.max(initial=0.0) < length:
             return np.where(offset < 0, offset + length, offset)  # a tenth of the time of `mod`
         return np.mod(offset, length)
 
@@ -143,7 +148,7 @@ class Loop:
         least = np.empty(len(at))
         least[order] = np.minimum(before[here - 1] + self.growth * at, after[here + 1] - self.growth * at)
         least = np.where(wide, np.nan, least[: len(limits)])
-        inside = np.mod(low[:, None] - low[wide], self.length) <= (high - low)[wide]
+        inside = self._forwards(low[:, None] - low[wide]) <= (high - low)[wide]
         return np.minimum(least, np.where(inside, size[wide], np.inf).min(axis=1, initial=np.inf))
 
     def _idle(self, limit: Array, others: Array) -> bool:
