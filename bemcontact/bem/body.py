@@ -11,7 +11,7 @@ from bemcontact.bem.bonds import BondedPoints
 from bemcontact.bem.contact_points import ContactPoints, contact_points
 from bemcontact.bem.free_motions import BODY, UNSEEN, FreeMotions, PlacedTools, free_motions, placed_tools
 from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
-from bemcontact.bem.mesh import Mesh, MeshPart, build
+from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions, toward
 from bemcontact.bem.unit_pressures import UnitPressures
@@ -82,24 +82,27 @@ class Body:
     bonds: BondedPoints
     apart: FreeMotions
 
-    def unit_pressures(self, part: MeshPart) -> UnitPressures:
-        """Unit pressures of contact points and unit tractions of bonds on the mesh of one of the bodies."""
-        own = self.points.unit_pressures(part)
-        return self.bonds.added_to(own, part, len(self.points)) if len(self.bonds) else own
+    @cached_property
+    def unit_pressures(self) -> tuple[UnitPressures, ...]:
+        """Unit pressures of contact points and unit tractions of bonds on the mesh of each of the bodies."""
+        if not len(self.bonds):
+            return self.points.unit_pressures
+        pairs = zip(self.points.unit_pressures, self.mesh.parts, strict=True)
+        return tuple(self.bonds.added_to(own, part, len(self.points)) for own, part in pairs)
 
     def all_changes(self, motions: FreeMotions) -> Array:
         """Changes (n + b, k) of gaps and bonds by free motions."""
         count = len(self.points) + len(self.bonds)
         changes = np.zeros((count, len(motions)))
         for number, part in enumerate(self.mesh.parts):
-            changes += motions.of_body(number).gap_changes(self.unit_pressures(part), part.mesh, count)
+            changes += motions.of_body(number).gap_changes(self.unit_pressures[number], part.mesh, count)
         return changes
 
     def all_work(self, motions: FreeMotions) -> Array:
         """Work (n + b, k) of unit pressures and unit tractions of bonds in free motions, over that amplitude [L]."""
         work = np.zeros((len(self.points) + len(self.bonds), len(motions)))
         for number, part in enumerate(self.mesh.parts):
-            pressures, mesh = self.unit_pressures(part), part.mesh
+            pressures, mesh = self.unit_pressures[number], part.mesh
             at = pressures.element, pressures.local
             moved = motions.of_body(number).displacement(mesh.nodes[mesh.elements[at]])
             forces = mesh.tributary[at][:, None] * pressures.traction
@@ -181,7 +184,7 @@ class Body:
         """R (n, k): change of the gaps in free motions."""
         changes = self.tools.motions @ motions.tools
         for number, part in enumerate(self.mesh.parts):
-            pressures = self.points.unit_pressures(part)
+            pressures = self.points.unit_pressures[number]
             changes += motions.of_body(number).gap_changes(pressures, part.mesh, len(self.points))
         return changes
 

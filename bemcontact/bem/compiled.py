@@ -465,7 +465,7 @@ def add_all(
     """Add the equations of all points, as `add_rows`, on all processors."""
     step = block_size(len(points.base))
     starts = np.arange(0, len(points.base), step)
-    workers = min(len(starts), os.cpu_count() or 1)
+    workers = min(len(starts), os.cpu_count() or 1) if len(starts) > 1 else 1
     if workers == 1:
         add_rows(out, starts, step, points, elements, columns, rules, factor)
         return

@@ -127,11 +127,11 @@ class CondensedTogether:
         start, count = sum(len(other.loadings) for other in self.bodies[:number]), len(body.loadings)
         loads = sum(len(other.loadings) for other in self.bodies)
         parts = []
-        for part in self.parts:
+        for part, pressures in zip(self.parts, body.unit_pressures, strict=True):
             own = [*range(start, start + count), *range(loads, part.response.columns)]
             system = replace(
                 part.system,
-                points=body.unit_pressures(part.mesh).turned(part.turn),
+                points=pressures.turned(part.turn),
                 loadings=part.system.loadings[start : start + count],
             )
             parts.append(replace(part, system=system, response=part.response.of_columns(own)))
@@ -144,21 +144,24 @@ def condense_together(bodies: Sequence[Body]) -> CondensedTogether:
     loadings = [loading for body in bodies for loading in body.loadings]
     systems = [
         System(
-            mesh=on_mesh.mesh, material=stated.material, points=first.unit_pressures(on_mesh), motions=motions,
+            mesh=on_mesh.mesh, material=stated.material, points=pressures, motions=motions,
             loadings=[loading.of_part(on_mesh) for loading in loadings],
         )
-        for stated, on_mesh, motions in zip(first.problem.parts, first.mesh.parts, first.motions, strict=True)
+        for stated, on_mesh, motions, pressures in zip(
+            first.problem.parts, first.mesh.parts, first.motions, first.unit_pressures, strict=True
+        )
     ]  # fmt: skip
     parts: dict[int, CondensedPart] = {}
     for like, turns in congruent(systems).items():
-        members = [systems[number].turned(turn, systems[like]) for number, turn in turns.items()]
+        own, others = systems[like], [(number, turn) for number, turn in turns.items() if number != like]
+        members = [own, *(systems[number].turned(turn, own) for number, turn in others)]
         every = [loading for system in members for loading in system.loadings]
-        response = solve_system(replace(systems[like], loadings=every))
+        response = solve_system(replace(own, loadings=every) if others else own)
         for i, (number, system) in enumerate(zip(turns, members, strict=True)):
-            own = [*range(i * len(loadings), (i + 1) * len(loadings)), *range(len(every), response.columns)]
+            columns = [*range(i * len(loadings), (i + 1) * len(loadings)), *range(len(every), response.columns)]
             parts[number] = CondensedPart(
                 mesh=first.mesh.parts[number], system=system, like=like, turn=turns[number],
-                response=response if len(members) == 1 else response.of_columns(own),
+                response=response.of_columns(columns) if others else response,
             )  # fmt: skip
     return CondensedTogether(bodies=bodies, parts=tuple(parts[number] for number in sorted(parts)))
 

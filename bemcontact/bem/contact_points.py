@@ -159,7 +159,12 @@ class ContactPoints:
             np.concatenate([change[still], forces[own] / self.tributary[point[own], None]]),
         )
 
-    def unit_pressures(self, part: MeshPart) -> UnitPressures:
+    @cached_property
+    def unit_pressures(self) -> tuple[UnitPressures, ...]:
+        """Unit pressures on the mesh of each of the bodies."""
+        return tuple(map(self._unit_pressures, self.mesh.parts))
+
+    def _unit_pressures(self, part: MeshPart) -> UnitPressures:
         """Unit pressures on the mesh of one of the bodies."""
         other, m = self.opposite, len(self.mesh.elements)
         element, local, point = (
@@ -519,9 +524,8 @@ def _first_alike(mesh: Mesh, sides: IntArray, normals: Array, gap: Array, tool: 
     Nodes (n, 2) on both sides are one if they move together. Two contacts may state the sides the other way round. It
     is -1 for a point that another one with a smaller gap keeps from touching.
     """
-    first, pair = np.arange(len(sides)), np.sort(sides, axis=1)
-    _, place = np.unique(pair, axis=0, return_inverse=True)
-    place = place.reshape(-1)
+    first, (low, high) = np.arange(len(sides)), np.sort(sides, axis=1).T
+    _, place = np.unique(low * len(mesh.nodes) + high, return_inverse=True)
     for j in np.flatnonzero(np.bincount(place)[place] > 1).tolist():
         same = [i for i in np.flatnonzero(place == place[j]).tolist() if tool[i] == tool[j]]
         turned = {i: 1.0 if sides[i, 0] == sides[j, 0] else -1.0 for i in same}

@@ -253,8 +253,8 @@ def free_motions(
     poles, radius = tools.poles(points), of_bodies[0].radius
     to_points = _to_points(tools.point - poles, radius)
     changes = [
-        replace(own, coefficients=np.eye(3)).gap_changes(points.unit_pressures(part), part.mesh, len(points))
-        for own, part in zip(of_bodies, points.mesh.parts, strict=True)
+        replace(own, coefficients=np.eye(3)).gap_changes(pressures, part.mesh, len(points))
+        for own, part, pressures in zip(of_bodies, points.mesh.parts, points.unit_pressures, strict=True)
     ]
     basis = np.hstack([*changes, tools.motions @ to_points])
     every = FreeMotions(
@@ -317,7 +317,7 @@ def _axis_of_walls(normals: Array) -> Array | None:
 def _at_bonds(bonds: BondedPoints, of_bodies: Sequence[RigidMotions]) -> Array:
     """Changes (b, 3 b') of the components of bonds by unit motions of each body."""
     changes = np.zeros((len(bonds), 3 * len(of_bodies)))
-    for number, (own, part) in enumerate(zip(of_bodies, bonds.mesh.parts, strict=True)):
+    for number, (own, part) in enumerate(zip(of_bodies, bonds.mesh.parts, strict=True) if len(bonds) else ()):
         pressures = bonds.added_to(UnitPressures.none(), part, 0)
         changes[:, 3 * number : 3 * number + 3] = replace(own, coefficients=np.eye(3)).gap_changes(
             pressures, part.mesh, len(bonds)

@@ -70,7 +70,7 @@ def of_model(name, refine=1):
     """A shipped model on its stated mesh, refined."""
     body = body_of(bemcontact.load(MODELS / f"{name}.yaml", variant="stated mesh").refined(refine))
     return System(
-        mesh=body.mesh, material=body.problem.material, points=body.points.unit_pressures(body.mesh.parts[0]),
+        mesh=body.mesh, material=body.problem.material, points=body.points.unit_pressures[0],
         motions=body.motions[0],
         loadings=body.loadings,
     )  # fmt: skip

@@ -61,7 +61,7 @@ def on_a_plane(name: str, edges: list, **actions: dict) -> Problem:
 def system_of(problem: Problem) -> System:
     body = body_of(problem)
     return System(
-        mesh=body.mesh, material=body.problem.material, points=body.points.unit_pressures(body.mesh.parts[0]),
+        mesh=body.mesh, material=body.problem.material, points=body.points.unit_pressures[0],
         motions=body.motions[0],
         loadings=body.loadings,
     )  # fmt: skip

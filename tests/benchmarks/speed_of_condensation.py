@@ -34,7 +34,7 @@ def system_of(problem: bemcontact.Problem) -> System:
     """The equations of a body."""
     body = body_of(problem)
     return System(
-        mesh=body.mesh, material=body.problem.material, points=body.points.unit_pressures(body.mesh.parts[0]),
+        mesh=body.mesh, material=body.problem.material, points=body.points.unit_pressures[0],
         motions=body.motions[0],
         loadings=body.loadings,
     )  # fmt: skip
