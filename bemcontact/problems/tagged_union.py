@@ -44,12 +44,15 @@ class TaggedUnion:
         return {member.model_fields["kind"].default: member for member in self.members}
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Validate with the chosen member; the union itself serves the JSON Schema only."""
-        return core_schema.no_info_wrap_validator_function(lambda value, _: self._chosen(value), handler(source))
+        """Validate with the chosen member; the validators of the others are not even made."""
+        return core_schema.no_info_plain_validator_function(self._chosen)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         """Choose by `kind` in the schema too, so that an editor checks the keys of the chosen kind."""
-        members = handler(schema)["anyOf"]
+        for member in self.members:
+            member.model_rebuild()
+        union = core_schema.union_schema([member.__pydantic_core_schema__ for member in self.members])
+        members = handler(union)["anyOf"]
         kinds = [handler.resolve_ref_schema(member)["properties"]["kind"]["const"] for member in members]
         chosen: JsonSchemaValue = {"type": "object", "properties": {"kind": {"enum": kinds}}}
         if self.default is None:

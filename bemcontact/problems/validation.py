@@ -68,7 +68,8 @@ def issues_of(error: ValidationError) -> list[Issue]:
 class SpecModel(BaseModel):
     """Base class of all parts of a problem: frozen, strict about types; `ProblemError` lists every issue at once."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    # Validators of kinds that a file does not have are never made.
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
     example: ClassVar[str]
     """A value as YAML has it, for error messages."""
     root: ClassVar[bool] = False
