@@ -10,13 +10,12 @@ from bemcontact.arrays import Array, BoolArray
 
 Inertia = tuple[int, int, int]
 
-geqp3, orgqr, trtri, pstrf, potrf, posv = get_lapack_funcs(
-    ("geqp3", "orgqr", "trtri", "pstrf", "potrf", "posv"), dtype=np.float64
-)
+geqp3, orgqr, pstrf, potrf, posv = get_lapack_funcs(("geqp3", "orgqr", "pstrf", "potrf", "posv"), dtype=np.float64)
 SWEEPS = 4
 BLOCK = 32
 """Block size of LAPACK, in columns."""
 ger: Any = get_blas_funcs("ger", dtype=np.float64)
+trsm: Any = get_blas_funcs("trsm", dtype=np.float64)
 
 
 def add_rank_one(matrix: Array, factor: float, column: Array, row: Array) -> None:
@@ -25,17 +24,20 @@ def add_rank_one(matrix: Array, factor: float, column: Array, row: Array) -> Non
         ger(factor, column, row, 1, 1, matrix, 0, 0, 1)  # by position, which is twice as fast as by name
 
 
-def inverse_triangle(R: Array) -> Array:
-    """Inverse of an upper triangle of full rank; entries below the diagonal are unchanged."""
-    return trtri(R)[0] if R.shape[0] else R
+def over_triangle(columns: Array, R: Array, *, transposed: bool) -> Array:
+    """Columns times R⁻¹ or R⁻ᵀ of an upper triangle R of full rank; entries below its diagonal are not read."""
+    return trsm(1.0, R, columns, 1, 0, int(transposed)) if R.shape[0] else columns
 
 
 def pivoted_cholesky(matrix: Array, zero: float) -> tuple[Array, NDArray[np.intp], int]:
-    """Pivoted Cholesky factor R, the order of rows and columns, and the rank; RᵀR is the leading part in this order."""
+    """Pivoted Cholesky factor R, the order of rows and columns, and the rank; RᵀR is the leading part in this order.
+
+    R is the upper triangle of the first result, whose other entries have no meaning.
+    """
     factor, pivots, rank, _ = pstrf(matrix, tol=zero)
     # LAPACK does not hold the first pivot against the tolerance
     rank = int(rank) if matrix.diagonal().max() > zero else 0
-    return np.triu(factor[:rank, :rank]), pivots - 1, rank
+    return factor[:rank, :rank], pivots - 1, rank
 
 
 def is_definite(matrix: Array) -> bool:
@@ -79,7 +81,10 @@ def inertia(matrix: Array, noise: Array | float = 0.0) -> Inertia:
 
 
 def orthogonal(rows: Array, tolerance: float) -> tuple[Array, Array, Array, NDArray[np.intp]]:
-    """Pivoted QR of rowsᵀ: bases of the range and of the null space, the triangle, and the independent rows."""
+    """Pivoted QR of rowsᵀ: bases of the range and of the null space, the triangle, and the independent rows.
+
+    The entries below the triangle have no meaning.
+    """
     m, n = rows.shape
     if m == 0 or n == 0:
         return np.zeros((n, 0)), np.eye(n), np.zeros((0, 0)), np.zeros(0, dtype=np.intp)
@@ -88,7 +93,7 @@ def orthogonal(rows: Array, tolerance: float) -> tuple[Array, Array, Array, NDAr
     full = np.zeros((n, n), order="F")
     full[:, : min(m, n)] = reflectors[:, : min(m, n)]
     Q = orgqr(full, tau, lwork=BLOCK * n)[0]
-    return Q[:, :rank], Q[:, rank:], np.triu(reflectors[:rank, :rank]), pivots[:rank].astype(np.intp) - 1
+    return Q[:, :rank], Q[:, rank:], reflectors[:rank, :rank], pivots[:rank].astype(np.intp) - 1
 
 
 def independent_rows(rows: Array, first: BoolArray, tolerance: float) -> NDArray[np.intp]:

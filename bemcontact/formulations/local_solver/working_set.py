@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from bemcontact.arrays import Array, BoolArray, fine_remainders
 from bemcontact.formulations.local_solver.factorizations import (
     independent_rows,
-    inverse_triangle,
     orthogonal,
+    over_triangle,
     unit_rows,
 )
 from bemcontact.formulations.local_solver.progress import FINE, SearchState
@@ -90,7 +90,7 @@ class WorkingSet:
                 independent = chosen[independent]
             kept, self.null_space = rows[independent], np.zeros((n, null_space.shape[1]))
             self.null_space[free] = null_space
-            columns = Y @ inverse_triangle(T).T / length[independent]
+            columns = over_triangle(Y, T, transposed=True) / length[independent]
         if kept.size < rows.size:
             self.sides[n + rows], self.held[n + rows] = 0, False
             self.sides[n + kept], self.held[n + kept] = sides[n + kept], True
@@ -158,11 +158,11 @@ class WorkingSet:
         return self.multipliers(gradient)[: gradient.size] * self.free
 
     def of_all(self, multipliers: Array) -> Array:
-        """Multipliers of all constraints (n + m,) from those of the working set, as `multipliers` has them."""
+        """Multipliers of all constraints (..., n + m) from those of the working set (..., n + r)."""
         n, real = self.free.size, self.ids >= 0
-        of_all = np.zeros(self.held.size)
-        of_all[:n] = multipliers[:n] * self.held[:n]
-        of_all[self.ids[real]] = multipliers[n:][real]
+        of_all = np.zeros((*multipliers.shape[:-1], self.held.size))
+        of_all[..., :n] = multipliers[..., :n] * self.held[:n]
+        of_all[..., self.ids[real]] = multipliers[..., n:][..., real]
         return of_all
 
     def _refine(self, of_rows: Array, gradient: Array, rest: Array) -> Array:
@@ -184,7 +184,7 @@ class WorkingSet:
         free = np.flatnonzero(self.free)
         Y, _, T, order = orthogonal(self.W[:, free], 0.0)
         if order.size == self.size:
-            self.inverse.renew(free, order, Y @ inverse_triangle(T).T)
+            self.inverse.renew(free, order, over_triangle(Y, T, transposed=True))
             self.sharp = True
 
     def add(self, constraint: int, side: int) -> Array | None:
