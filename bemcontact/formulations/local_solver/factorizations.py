@@ -47,7 +47,7 @@ def is_definite(matrix: Array) -> bool:
 
 def row_lengths(rows: Array) -> Array:
     """Euclidean length of each row, 1 for a row of zeros."""
-    length = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    length = np.sqrt(np.vecdot(rows, rows))
     length[length == 0.0] = 1.0
     return length
 

@@ -236,7 +236,7 @@ class Descent:
             return False, place
         self._refine()
         multipliers, zeros = self.multipliers, self.zeros
-        large = loose and (np.abs(multipliers[:n] * working.free) > zeros[:n]).any()
+        large = loose and np.count_nonzero(np.abs(multipliers[:n] * working.free) > zeros[:n])
         if large and not self._rests(hessian.newton(progress.gradient)):
             return True, None
         place = wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
