@@ -100,9 +100,13 @@ class Loop:
         if not len(positions):
             return np.zeros(0)
         low, high, size = limits.T
-        offset = self._forwards(positions[:, None] - low)
-        beyond = np.maximum(np.minimum(offset - (high - low), self.length - offset), 0.0)
-        least = np.min(size + self.growth * beyond, axis=1)
+        offset = self._forwards(positions[:, None] - low)  # it is large: all below is done in place
+        beyond = self.length - offset
+        offset -= high - low
+        np.maximum(np.minimum(offset, beyond, out=beyond), 0.0, out=beyond)
+        beyond *= self.growth
+        beyond += size
+        least = beyond.min(axis=1)
         for layer in layers:
             offset = self._forwards(positions - layer.position)
             after = offset <= self.length / 2
@@ -110,10 +114,11 @@ class Loop:
         return least
 
     def _forwards(self, offset: Array) -> Array:
-        """Distances forwards along the loop [L]: differences of positions modulo its length."""
+        """Distances forwards along the loop [L]: differences of positions modulo its length; they are changed."""
         length = self.length
         if offset.min() >= -length and offset.max() < length:
-            return np.where(offset < 0, offset + length, offset)  # a tenth of the time of `mod`
+            offset += length * (offset < 0)  # a tenth of the time of `mod`
+            return offset
         return np.mod(offset, length)
 
     def without_idle(self, limits: Array) -> Array:
