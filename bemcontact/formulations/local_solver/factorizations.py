@@ -80,25 +80,26 @@ def inertia(matrix: Array, noise: Array | float = 0.0) -> Inertia:
     return positive, matrix.shape[0] - positive - negative, negative
 
 
-def orthogonal(rows: Array, tolerance: float) -> tuple[Array, Array, Array, NDArray[np.intp]]:
+def orthogonal(rows: Array, tolerance: float, *, complete: bool = True) -> tuple[Array, Array, Array, NDArray[np.intp]]:
     """Pivoted QR of rowsᵀ: bases of the range and of the null space, the triangle, and the independent rows.
 
-    The entries below the triangle have no meaning.
+    The entries below the triangle have no meaning. The basis of the null space has no columns unless it is `complete`.
     """
     m, n = rows.shape
     if m == 0 or n == 0:
         return np.zeros((n, 0)), np.eye(n), np.zeros((0, 0)), np.zeros(0, dtype=np.intp)
     reflectors, pivots, tau, *_ = geqp3(rows.T, lwork=2 * m + BLOCK * (m + 1))
     rank = int(np.count_nonzero(np.abs(reflectors.diagonal()) > tolerance))
-    full = np.zeros((n, n), order="F")
-    full[:, : min(m, n)] = reflectors[:, : min(m, n)]
-    Q = orgqr(full, tau, lwork=BLOCK * n)[0]
+    Q = np.zeros((n, n if complete else rank), order="F")
+    given = min(m, Q.shape[1])
+    Q[:, :given] = reflectors[:, :given]
+    Q = orgqr(Q, tau[:given], lwork=BLOCK * n)[0]
     return Q[:, :rank], Q[:, rank:], reflectors[:rank, :rank], pivots[:rank].astype(np.intp) - 1
 
 
 def independent_rows(rows: Array, first: BoolArray, tolerance: float) -> NDArray[np.intp]:
     """Indices of independent rows, of rows of length one; those marked in `first` (m,) are preferred."""
     preferred, others = first.nonzero()[0], (~first).nonzero()[0]
-    span, _, _, kept = orthogonal(rows[preferred], tolerance)
+    span, _, _, kept = orthogonal(rows[preferred], tolerance, complete=False)
     outside = rows[others] - (rows[others] @ span) @ span.T
-    return np.concatenate([preferred[kept], others[orthogonal(outside, tolerance)[3]]])
+    return np.concatenate([preferred[kept], others[orthogonal(outside, tolerance, complete=False)[3]]])

@@ -55,7 +55,7 @@ class WorkingSet:
     """The constraints that are held, changed in place by `add` and `drop`.
 
     It starts from the wanted `sides` (n + m,): 0 free, -1 lower, +1 upper, 2 equality. Dependent rows are left out;
-    those marked in `first` (n + m,) are kept before others.
+    those marked in `first` (n + m,) are kept before others. Without `complete` there is no `null_space`.
 
     Attributes
     ----------
@@ -70,7 +70,9 @@ class WorkingSet:
     sharp : whether N still has all its digits
     """
 
-    def __init__(self, statement: Statement, sides: Sides, first: BoolArray | None = None) -> None:
+    def __init__(
+        self, statement: Statement, sides: Sides, first: BoolArray | None = None, *, complete: bool = True
+    ) -> None:
         n, A = statement.c.size, statement.A
         self.statement = statement
         self.sides = sides.copy()
@@ -83,10 +85,10 @@ class WorkingSet:
         self.null_space[free, np.arange(free.size)] = 1.0
         if rows.size and free.size:
             normals, length = unit_rows(A[rows][:, free])
-            Y, null_space, T, independent = orthogonal(normals, DEPENDENT)
+            Y, null_space, T, independent = orthogonal(normals, DEPENDENT, complete=complete)
             if first is not None and independent.size < rows.size:
                 chosen = independent_rows(normals, first[n + rows], DEPENDENT)
-                Y, null_space, T, independent = orthogonal(normals[chosen], 0.0)
+                Y, null_space, T, independent = orthogonal(normals[chosen], 0.0, complete=complete)
                 independent = chosen[independent]
             kept, self.null_space = rows[independent], np.zeros((n, null_space.shape[1]))
             self.null_space[free] = null_space
@@ -182,7 +184,7 @@ class WorkingSet:
     def _renew(self) -> None:
         """Compute N again from the rows, without accumulated rounding: O(n³)."""
         free = np.flatnonzero(self.free)
-        Y, _, T, order = orthogonal(self.W[:, free], 0.0)
+        Y, _, T, order = orthogonal(self.W[:, free], 0.0, complete=False)
         if order.size == self.size:
             self.inverse.renew(free, order, over_triangle(Y, T, transposed=True))
             self.sharp = True
@@ -337,7 +339,7 @@ def supporting(progress: SearchState, sides: Sides) -> Sides:
     free, rows = (sides[:n] == 0).nonzero()[0], sides[n:].nonzero()[0]
     if rows.size == 0 or (statement.violation(progress.values) > progress.slack).any():
         return sides
-    if orthogonal(unit_rows(statement.A[rows][:, free])[0], DEPENDENT)[3].size == rows.size:
+    if orthogonal(unit_rows(statement.A[rows][:, free])[0], DEPENDENT, complete=False)[3].size == rows.size:
         return sides
     fixed = statement.equality & (np.arange(sides.size) < n)
     active = ((sides != 0) & ~fixed).nonzero()[0]
