@@ -10,7 +10,7 @@ from contextlib import ContextDecorator, contextmanager
 from functools import lru_cache
 
 import scipy.linalg  # noqa: F401 - loads the BLAS of SciPy
-from threadpoolctl import ThreadpoolController
+from threadpoolctl import LibController, ThreadpoolController
 
 WORTH_THREADS = 1e10
 """Products of two numbers from which several threads share the work on a matrix: those of a factorization of size 3100.
@@ -21,9 +21,9 @@ they wait for each other, and take up to three times as long; for more work they
 
 
 @lru_cache(maxsize=1)
-def _libraries() -> ThreadpoolController:
+def _libraries() -> list[LibController]:
     """The BLAS libraries of NumPy and SciPy, which must be loaded to be found."""
-    return ThreadpoolController()
+    return ThreadpoolController().select(user_api="blas").lib_controllers
 
 
 class _OneThread(ContextDecorator):
@@ -31,33 +31,40 @@ class _OneThread(ContextDecorator):
 
     def __init__(self):
         self.lock, self.users = threading.Lock(), 0
-        self.before = None
+        self.before: list[tuple[LibController, int]] = []
 
     def __enter__(self) -> None:
         with self.lock:
             if not self.users:
-                self.before = _libraries().limit(limits=1, user_api="blas")
+                self.before = [(library, library.get_num_threads() or 1) for library in _libraries()]
+                self._set(1)
             self.users += 1
 
     def __exit__(self, *_: object) -> None:
         with self.lock:
             self.users -= 1
-            if not self.users and self.before is not None:
-                self.before.restore_original_limits()
+            if not self.users:
+                self._set(None)
+
+    def _set(self, threads: int | None) -> None:
+        """Let each library that had several threads take so many; None: as many as before."""
+        for library, before in self.before:
+            if before > 1:
+                library.set_num_threads(threads or before)
 
     @contextmanager
     def lifted(self, products: float) -> Iterator[None]:
         """As many threads as before, for so many products of two numbers if these are worth it."""
         many = products >= WORTH_THREADS
         with self.lock:
-            if many and self.users and self.before is not None:
-                self.before.restore_original_limits()
+            if many and self.users:
+                self._set(None)
         try:
             yield
         finally:
             with self.lock:
                 if many and self.users:
-                    _libraries().limit(limits=1, user_api="blas")
+                    self._set(1)
 
 
 one_thread = _OneThread()

@@ -29,20 +29,18 @@ class Library:
     def __init__(self):
         self.threads = [2]
 
-    def limit(self, limits: int, user_api: str) -> "Library":
-        assert user_api == "blas"
-        self.threads.append(limits)
-        return self
+    def get_num_threads(self) -> int:
+        return self.threads[-1]
 
-    def restore_original_limits(self) -> None:
-        self.threads.append(self.threads[0])
+    def set_num_threads(self, threads: int) -> None:
+        self.threads.append(threads)
 
 
 @pytest.fixture(autouse=True)
 def library(monkeypatch):
     found = Library()
-    monkeypatch.setattr(blas_threads, "_libraries", lambda: found)
-    monkeypatch.setattr(one_thread, "before", None)
+    monkeypatch.setattr(blas_threads, "_libraries", lambda: [found])
+    monkeypatch.setattr(one_thread, "before", [])
     return found
 
 

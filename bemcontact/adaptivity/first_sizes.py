@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from math import pi
 
@@ -44,6 +44,8 @@ NARROW = 0.01
 """Least element over its edge where a surface comes near."""
 AT_CORNER = 0.1
 """Element at a corner of the rigid surface over its edge."""
+KEPT = 4
+"""Outlines that are kept for other problems with the same one."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -119,8 +121,13 @@ class SizedOutline:
         away = np.abs(self.positions[loop] - position % self.loops[loop].length)
         return float(self.thickness[loop][np.argmin(away)])
 
-    def sizes(self, loop: int) -> Iterator[Limit]:
-        """Limits of the element size along a loop that do not depend on what it touches."""
+    @cached_property
+    def limits(self) -> tuple[tuple[Limit, ...], ...]:
+        """Limits of the element size along each loop that do not depend on what it touches."""
+        return tuple(tuple(self._sizes(number)) for number in range(len(self.loops)))
+
+    def _sizes(self, loop: int) -> Iterator[Limit]:
+        """The limits along one loop."""
         own = self.loops[loop]
         for edge, start, stop in zip(own.edges, own.joints[:-1].tolist(), own.joints[1:].tolist(), strict=True):
             yield Limit(low=start, high=stop, size=PART * edge.length)
@@ -133,16 +140,18 @@ class SizedOutline:
 
 
 def sized_outline(problem: Problem) -> SizedOutline:
-    """The boundary of a problem, whatever its elements are."""
-    loops = [(Loop(edges=edges), number) for number, part in enumerate(problem.parts) for edges in part.loops]
+    """The boundary of a problem, whatever its elements are; problems that differ in loads and gaps share it."""
+    loops = [(edges, number) for number, part in enumerate(problem.parts) for edges in part.loops]
     surfaces = [zone.surface for zone in problem.zones.values()]
     touching = {name for zone in problem.zones for name in problem.edges_of(zone)}
     touching |= {edge.name for surface in surfaces if isinstance(surface, BodySurface) for edge in surface.edges}
-    return SizedOutline(
-        loops=tuple(loop for loop, _ in loops),
-        bodies=tuple(number for _, number in loops),
-        touching=frozenset(touching),
-    )
+    return _outline(tuple(edges for edges, _ in loops), tuple(number for _, number in loops), frozenset(touching))
+
+
+@lru_cache(maxsize=KEPT)
+def _outline(loops: tuple[tuple[Edge, ...], ...], bodies: tuple[int, ...], touching: frozenset[str]) -> SizedOutline:
+    """The outline of all loops, made once."""
+    return SizedOutline(loops=tuple(Loop(edges=edges) for edges in loops), bodies=bodies, touching=touching)
 
 
 def _curvature(edge: Edge, start: float) -> Iterator[Limit]:

@@ -63,7 +63,7 @@ class MeshSizes:
         limits: list[list[Limit]] = []
         marks: list[list[float]] = []
         for number, loop in enumerate(shape.loops):
-            own, ends = [*shape.sizes(number), *near.get(number, [])], [*corners.get(number, [])]
+            own, ends = [*shape.limits[number], *near.get(number, [])], [*corners.get(number, [])]
             for edge in loop.edges:
                 start, length = loop.start_of[edge.name], edge.length
                 ends += [start + place * length for place in edge.ends_at]

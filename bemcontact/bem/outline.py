@@ -54,19 +54,22 @@ class Outline:
         They are `SAMPLES`, but where the boundary is nearest to a surface the next one is moved there: what is
         narrower than an element would be between them.
         """
-        of_edge, fractions = self.mesh.edge, self.mesh.fractions
-        local, free = np.tile(SAMPLES, (len(of_edge), 1)), np.ones((len(of_edge), len(SAMPLES)), bool)
-        free[:, NODES] = False
+        fractions, step = self.mesh.fractions, SAMPLES[-1] / NODES[1]
+        local, taken = np.tile(SAMPLES, (len(fractions), 1)), np.zeros((len(fractions), len(SAMPLES)))
+        taken[:, NODES] = np.inf
         for number, edge in enumerate(self.edges):
+            own = np.flatnonzero(self.mesh.edge == number)
             for name, zone in self.problem.zones.items():
-                for place in _narrow_places(edge, zone.surface, paired=edge.name in self.problem.edges_of(name)):
-                    own = np.flatnonzero(of_edge == number)
-                    element = own[min(int(np.searchsorted(fractions[own, 2], place)), len(own) - 1)]
-                    first, _, last = fractions[element]
-                    xi = 2 * (place - first) / (last - first) - 1
-                    away = np.where(free[element] & (SAMPLES * xi > 0), np.abs(SAMPLES - xi), np.inf)
-                    if away.min() < 2 * SAMPLES[-1] / NODES[1]:
-                        local[element, away.argmin()], free[element, away.argmin()] = xi, False
+                narrow = _narrow_places(edge, zone.surface, paired=edge.name in self.problem.edges_of(name))
+                places = np.array([*narrow], float)
+                elements = own[np.minimum(np.searchsorted(fractions[own, 2], places), len(own) - 1)]
+                first, _, last = fractions[elements].T
+                xi = (2 * (places - first) / (last - first) - 1)[:, None]
+                away = np.where(SAMPLES * xi > 0, np.abs(SAMPLES - xi), np.inf)
+                for i, element in enumerate(elements):
+                    distance = away[i] + taken[element]
+                    if distance[at := distance.argmin()] < 2 * step:
+                        local[element, at], taken[element, at] = xi[i, 0], np.inf
         return np.sort(local, axis=1)
 
     @cached_property

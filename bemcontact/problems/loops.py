@@ -1,6 +1,7 @@
 """Whether loops enclose one body: they do not cross, they have the right orientation, and the holes are inside."""
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from math import dist, pi
 
 import numpy as np
@@ -16,15 +17,20 @@ CUSP = 1e-6
 """Angle [rad] between two neighbors below which one of them folds back on the other."""
 PAIRS_AT_ONCE = 2**20
 """Pairs of sides whose bounding boxes are compared at once: a few megabytes."""
+KEPT = 16
+"""Boundaries of which the issues are kept: in a study those of many problems are the same."""
 
 
 def loop_issues(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> list[Issue]:
     """Issues of the outer loop and the holes: crossings, else orientations, else positions of holes and cusps."""
-    return (
-        [*_crossings(loops, paths)]
-        or [*_orientations(loops, paths)]
-        or [*_nestings(loops, paths), *_cusps(loops, paths)]
-    )
+    return [*_issues(tuple(map(tuple, loops)), tuple(paths))]
+
+
+@lru_cache(maxsize=KEPT)
+def _issues(loops: tuple[tuple[Edge, ...], ...], paths: tuple[KeyPath, ...]) -> tuple[Issue, ...]:
+    """The issues, found once for all problems with these loops."""
+    issues = [*_crossings(loops, paths)] or [*_orientations(loops, paths)]
+    return tuple(issues or [*_nestings(loops, paths), *_cusps(loops, paths)])
 
 
 def polygon(loop: Sequence[Edge]) -> Array:

@@ -146,7 +146,7 @@ def test_a_corner_halves_the_size():
     """A square of 8: half of an edge, and half of that at corners."""
     problem = block(8, 8)
     shape = sized_outline(problem)
-    limits = np.array([*shape.sizes(0)])
+    limits = np.array(shape.limits[0])
     at = shape.loops[0].size_at(shape.loops[0].joints, limits, ())
     assert (at <= 2.0).all()
 

@@ -10,13 +10,12 @@ from bemcontact.arrays import Array, BoolArray
 
 Inertia = tuple[int, int, int]
 
-geqp3, orgqr, trtri, pstrf, potrf, posv = get_lapack_funcs(
-    ("geqp3", "orgqr", "trtri", "pstrf", "potrf", "posv"), dtype=np.float64
-)
+geqp3, orgqr, pstrf, potrf, posv = get_lapack_funcs(("geqp3", "orgqr", "pstrf", "potrf", "posv"), dtype=np.float64)
 SWEEPS = 4
 BLOCK = 32
 """Block size of LAPACK, in columns."""
 ger: Any = get_blas_funcs("ger", dtype=np.float64)
+trsm: Any = get_blas_funcs("trsm", dtype=np.float64)
 
 
 def add_rank_one(matrix: Array, factor: float, column: Array, row: Array) -> None:
@@ -25,17 +24,20 @@ def add_rank_one(matrix: Array, factor: float, column: Array, row: Array) -> Non
         ger(factor, column, row, 1, 1, matrix, 0, 0, 1)  # by position, which is twice as fast as by name
 
 
-def inverse_triangle(R: Array) -> Array:
-    """Inverse of an upper triangle of full rank; entries below the diagonal are unchanged."""
-    return trtri(R)[0] if R.shape[0] else R
+def over_triangle(columns: Array, R: Array, *, transposed: bool) -> Array:
+    """Columns times R⁻¹ or R⁻ᵀ of an upper triangle R of full rank; entries below its diagonal are not read."""
+    return trsm(1.0, R, columns, 1, 0, int(transposed)) if R.shape[0] else columns
 
 
 def pivoted_cholesky(matrix: Array, zero: float) -> tuple[Array, NDArray[np.intp], int]:
-    """Pivoted Cholesky factor R, the order of rows and columns, and the rank; RᵀR is the leading part in this order."""
+    """Pivoted Cholesky factor R, the order of rows and columns, and the rank; RᵀR is the leading part in this order.
+
+    R is the upper triangle of the first result, whose other entries have no meaning.
+    """
     factor, pivots, rank, _ = pstrf(matrix, tol=zero)
     # LAPACK does not hold the first pivot against the tolerance
     rank = int(rank) if matrix.diagonal().max() > zero else 0
-    return np.triu(factor[:rank, :rank]), pivots - 1, rank
+    return factor[:rank, :rank], pivots - 1, rank
 
 
 def is_definite(matrix: Array) -> bool:
@@ -45,7 +47,7 @@ def is_definite(matrix: Array) -> bool:
 
 def row_lengths(rows: Array) -> Array:
     """Euclidean length of each row, 1 for a row of zeros."""
-    length = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    length = np.sqrt(np.vecdot(rows, rows))
     length[length == 0.0] = 1.0
     return length
 
@@ -78,22 +80,26 @@ def inertia(matrix: Array, noise: Array | float = 0.0) -> Inertia:
     return positive, matrix.shape[0] - positive - negative, negative
 
 
-def orthogonal(rows: Array, tolerance: float) -> tuple[Array, Array, Array, NDArray[np.intp]]:
-    """Pivoted QR of rowsᵀ: bases of the range and of the null space, the triangle, and the independent rows."""
+def orthogonal(rows: Array, tolerance: float, *, complete: bool = True) -> tuple[Array, Array, Array, NDArray[np.intp]]:
+    """Pivoted QR of rowsᵀ: bases of the range and of the null space, the triangle, and the independent rows.
+
+    The entries below the triangle have no meaning. The basis of the null space has no columns unless it is `complete`.
+    """
     m, n = rows.shape
     if m == 0 or n == 0:
         return np.zeros((n, 0)), np.eye(n), np.zeros((0, 0)), np.zeros(0, dtype=np.intp)
     reflectors, pivots, tau, *_ = geqp3(rows.T, lwork=2 * m + BLOCK * (m + 1))
     rank = int(np.count_nonzero(np.abs(reflectors.diagonal()) > tolerance))
-    full = np.zeros((n, n), order="F")
-    full[:, : min(m, n)] = reflectors[:, : min(m, n)]
-    Q = orgqr(full, tau, lwork=BLOCK * n)[0]
-    return Q[:, :rank], Q[:, rank:], np.triu(reflectors[:rank, :rank]), pivots[:rank].astype(np.intp) - 1
+    Q = np.zeros((n, n if complete else rank), order="F")
+    given = min(m, Q.shape[1])
+    Q[:, :given] = reflectors[:, :given]
+    Q = orgqr(Q, tau[:given], lwork=BLOCK * n)[0]
+    return Q[:, :rank], Q[:, rank:], reflectors[:rank, :rank], pivots[:rank].astype(np.intp) - 1
 
 
 def independent_rows(rows: Array, first: BoolArray, tolerance: float) -> NDArray[np.intp]:
     """Indices of independent rows, of rows of length one; those marked in `first` (m,) are preferred."""
     preferred, others = first.nonzero()[0], (~first).nonzero()[0]
-    span, _, _, kept = orthogonal(rows[preferred], tolerance)
+    span, _, _, kept = orthogonal(rows[preferred], tolerance, complete=False)
     outside = rows[others] - (rows[others] @ span) @ span.T
-    return np.concatenate([preferred[kept], others[orthogonal(outside, tolerance)[3]]])
+    return np.concatenate([preferred[kept], others[orthogonal(outside, tolerance, complete=False)[3]]])

@@ -117,8 +117,8 @@ def _second_phase(progress: SearchState, descent: Descent, renewals: int) -> Fin
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
     if outcome.ending is Ending.INACCURATE:
         return Restart(sides=descent.working.sides, failed=True)
-    multipliers = descent.working.of_all(descent.multipliers)
-    zeros, sizes = (descent.working.of_all(sizes) for sizes in (descent.zeros, descent.sizes))
+    of_held = np.array([descent.multipliers, descent.zeros, descent.sizes])
+    multipliers, zeros, sizes = descent.working.of_all(of_held)
     conditions = first_order(progress, descent.working.held, multipliers, zeros, sizes)
     if (progress.worn or conditions.doubtful) and renewals < RENEWALS:
         return Restart(sides=descent.working.sides, failed=False)

@@ -25,10 +25,10 @@ def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> t
     statement, n = progress.statement, progress.x.size
     if not np.count_nonzero(violated_signs(progress)):
         return WorkingSet(statement, _and_equalities(statement, sides), sides != 0), None
-    working = WorkingSet(statement, _and_equalities(statement, sides))
+    working = WorkingSet(statement, _and_equalities(statement, sides), complete=False)
     near = working.onto(progress.x)
     if progress.loses_digits(near):  # equalities are met one by one
-        working = WorkingSet(statement, sides)
+        working = WorkingSet(statement, sides, complete=False)
         near = working.onto(progress.x)
     progress.place(near)
     while (violated := (signs := _signs_of_others(progress, working)).dot(signs)) or progress.drifted:

@@ -12,12 +12,13 @@ SIAM Review 33 (1991) 1-36; Gill and Wong, Math. Prog. Comp. 7 (2015) 71-112).
 
 from dataclasses import dataclass
 from enum import Enum, auto
+from functools import lru_cache
 from math import sqrt
 
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.factorizations import add_rank_one, inverse_triangle, pivoted_cholesky
+from bemcontact.formulations.local_solver.factorizations import add_rank_one, over_triangle, pivoted_cholesky
 from bemcontact.formulations.local_solver.optimality import SEEN
 from bemcontact.formulations.local_solver.progress import FINE, SearchState
 from bemcontact.formulations.local_solver.ratio_test import BlockingConstraint, nearest
@@ -59,7 +60,7 @@ class ReducedHessian:
             ordered = null_space[:, order]
             self.left_over = ordered[:, rank:]
             self._resize(rank)
-            self.Z[:] = ordered[:, :rank] @ inverse_triangle(factor)
+            self.Z[:] = over_triangle(ordered[:, :rank], factor, transposed=False)
 
     def _resize(self, size: int) -> None:
         """Set the view on the leading columns."""
@@ -235,7 +236,7 @@ class Descent:
             return False, place
         self._refine()
         multipliers, zeros = self.multipliers, self.zeros
-        large = loose and (np.abs(multipliers[:n] * working.free) > zeros[:n]).any()
+        large = loose and np.count_nonzero(np.abs(multipliers[:n] * working.free) > zeros[:n])
         if large and not self._rests(hessian.newton(progress.gradient)):
             return True, None
         place = wrong_sign(working, self._allowed(multipliers), zeros, least_index=least)
@@ -430,6 +431,7 @@ class Descent:
         self.dropped, self.idle = None, 0
 
 
+@lru_cache(maxsize=64)
 def _phases(count: int) -> Array:
     """Cosines and sines (count, 2) of irregular angles."""
     angles = np.square(np.arange(count, dtype=float))

@@ -105,7 +105,7 @@ class SearchState:
     @property
     def worn(self) -> bool:
         """Whether the point is much nearer than others before it, whose rounding counts."""
-        return bool((self.traveled > WORN * np.maximum(np.abs(self.x), 1.0)).any())
+        return bool(np.count_nonzero(self.traveled > WORN * np.maximum(np.abs(self.x), 1.0)))
 
     @property
     def drifted(self) -> bool:

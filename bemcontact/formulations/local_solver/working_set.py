@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from bemcontact.arrays import Array, BoolArray, fine_remainders
 from bemcontact.formulations.local_solver.factorizations import (
     independent_rows,
-    inverse_triangle,
     orthogonal,
+    over_triangle,
     unit_rows,
 )
 from bemcontact.formulations.local_solver.progress import FINE, SearchState
@@ -55,7 +55,7 @@ class WorkingSet:
     """The constraints that are held, changed in place by `add` and `drop`.
 
     It starts from the wanted `sides` (n + m,): 0 free, -1 lower, +1 upper, 2 equality. Dependent rows are left out;
-    those marked in `first` (n + m,) are kept before others.
+    those marked in `first` (n + m,) are kept before others. Without `complete` there is no `null_space`.
 
     Attributes
     ----------
@@ -70,7 +70,9 @@ class WorkingSet:
     sharp : whether N still has all its digits
     """
 
-    def __init__(self, statement: Statement, sides: Sides, first: BoolArray | None = None) -> None:
+    def __init__(
+        self, statement: Statement, sides: Sides, first: BoolArray | None = None, *, complete: bool = True
+    ) -> None:
         n, A = statement.c.size, statement.A
         self.statement = statement
         self.sides = sides.copy()
@@ -83,14 +85,14 @@ class WorkingSet:
         self.null_space[free, np.arange(free.size)] = 1.0
         if rows.size and free.size:
             normals, length = unit_rows(A[rows][:, free])
-            Y, null_space, T, independent = orthogonal(normals, DEPENDENT)
+            Y, null_space, T, independent = orthogonal(normals, DEPENDENT, complete=complete)
             if first is not None and independent.size < rows.size:
                 chosen = independent_rows(normals, first[n + rows], DEPENDENT)
-                Y, null_space, T, independent = orthogonal(normals[chosen], 0.0)
+                Y, null_space, T, independent = orthogonal(normals[chosen], 0.0, complete=complete)
                 independent = chosen[independent]
             kept, self.null_space = rows[independent], np.zeros((n, null_space.shape[1]))
             self.null_space[free] = null_space
-            columns = Y @ inverse_triangle(T).T / length[independent]
+            columns = over_triangle(Y, T, transposed=True) / length[independent]
         if kept.size < rows.size:
             self.sides[n + rows], self.held[n + rows] = 0, False
             self.sides[n + kept], self.held[n + kept] = sides[n + kept], True
@@ -158,11 +160,11 @@ class WorkingSet:
         return self.multipliers(gradient)[: gradient.size] * self.free
 
     def of_all(self, multipliers: Array) -> Array:
-        """Multipliers of all constraints (n + m,) from those of the working set, as `multipliers` has them."""
+        """Multipliers of all constraints (..., n + m) from those of the working set (..., n + r)."""
         n, real = self.free.size, self.ids >= 0
-        of_all = np.zeros(self.held.size)
-        of_all[:n] = multipliers[:n] * self.held[:n]
-        of_all[self.ids[real]] = multipliers[n:][real]
+        of_all = np.zeros((*multipliers.shape[:-1], self.held.size))
+        of_all[..., :n] = multipliers[..., :n] * self.held[:n]
+        of_all[..., self.ids[real]] = multipliers[..., n:][..., real]
         return of_all
 
     def _refine(self, of_rows: Array, gradient: Array, rest: Array) -> Array:
@@ -182,9 +184,9 @@ class WorkingSet:
     def _renew(self) -> None:
         """Compute N again from the rows, without accumulated rounding: O(n³)."""
         free = np.flatnonzero(self.free)
-        Y, _, T, order = orthogonal(self.W[:, free], 0.0)
+        Y, _, T, order = orthogonal(self.W[:, free], 0.0, complete=False)
         if order.size == self.size:
-            self.inverse.renew(free, order, Y @ inverse_triangle(T).T)
+            self.inverse.renew(free, order, over_triangle(Y, T, transposed=True))
             self.sharp = True
 
     def add(self, constraint: int, side: int) -> Array | None:
@@ -337,7 +339,7 @@ def supporting(progress: SearchState, sides: Sides) -> Sides:
     free, rows = (sides[:n] == 0).nonzero()[0], sides[n:].nonzero()[0]
     if rows.size == 0 or (statement.violation(progress.values) > progress.slack).any():
         return sides
-    if orthogonal(unit_rows(statement.A[rows][:, free])[0], DEPENDENT)[3].size == rows.size:
+    if orthogonal(unit_rows(statement.A[rows][:, free])[0], DEPENDENT, complete=False)[3].size == rows.size:
         return sides
     fixed = statement.equality & (np.arange(sides.size) < n)
     active = ((sides != 0) & ~fixed).nonzero()[0]

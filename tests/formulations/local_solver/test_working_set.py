@@ -228,8 +228,11 @@ def test_the_pivoted_factorization_gives_both_spaces():
     assert (Y.shape, Z.shape, kept.size) == ((4, 2), (4, 2), 2)
     Q = np.hstack([Y, Z])
     assert_allclose(Q.T @ Q, np.eye(4), atol=1e-15)
-    assert_allclose(Y @ T, rows[kept].T, atol=1e-15)
+    assert_allclose(Y @ np.triu(T), rows[kept].T, atol=1e-15)
     assert_allclose(rows @ Z, 0.0, atol=1e-15)
+    alone, none, *_ = orthogonal(rows, 1e-9, complete=False)
+    assert_allclose(alone, Y, atol=1e-15)
+    assert none.shape == (4, 0)
 
 
 @pytest.mark.parametrize("level", [1e-3, 1e-5, 1e-7])
