@@ -116,13 +116,15 @@ class Fan:
 class Setting:
     """What pictures side by side share: a window, two corners (2, 2), and the pressure and length of the longest fan.
 
-    A `part` of the body that a close-up shows has no supports and no loads.
+    A `part` of the body that a close-up shows has no supports and no loads. The longest arrow is that of the largest
+    traction in each picture, or of a `load` in all.
     """
 
     window: Array
     pressure: float
     length: float
     part: bool
+    load: float = 0.0
 
     @property
     def size(self) -> float:
@@ -218,7 +220,7 @@ def sketch_contact(
     symbols = list[Array]()
     if not part:
         displacement = _displacement(state)
-        symbols = [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
+        symbols = [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement, setting.load)]
         symbols += draw_weights(axes, problem, displacement)
     infinite, scale, length = result.accuracy.infinite, setting.pressure, setting.length
     names, tips = list[Name](), list[Array]()

@@ -290,16 +290,27 @@ def _draw_springs(axes: Axes, edge: Edge, springs: Springs, displacement: Displa
         yield draw_springs(axes, points + displacement(points) + beside, away, 0.045 * size, BLUE)
 
 
-def draw_loads(axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like) -> Iterator[Array]:
+def largest_traction(problem: Problem) -> float:
+    """The largest prescribed traction that is drawn [p]."""
+    return max(float(np.hypot(*traction.T).max()) for _, traction in _tractions(problem))
+
+
+def _tractions(problem: Problem) -> list[tuple[Array, Array]]:
+    """Fractions (k,) of each edge at which arrows stand, and the prescribed tractions (k, 2) there."""
+    across = [_loaded(problem, edge) for edge in problem.edges]
+    return [(at, _traction(problem, edge, at)) for edge, at in zip(problem.edges, across, strict=True)]
+
+
+def draw_loads(
+    axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like, largest: float = 0.0
+) -> Iterator[Array]:
     """Draw prescribed tractions as arrows to one scale; they end on the body if they push, start there if they pull.
 
-    Tractions along an edge are drawn beside it.
+    Tractions along an edge are drawn beside it. The longest arrow is that of the `largest` traction, if this is larger
+    than those of the problem.
     """
-    size = problem.size
-    across = [_loaded(problem, edge) for edge in problem.edges]
-    tractions = [_traction(problem, edge, at) for edge, at in zip(problem.edges, across, strict=True)]
-    largest = max(float(np.hypot(*traction.T).max()) for traction in tractions)
-    for edge, fractions, traction in zip(problem.edges, across, tractions, strict=True):
+    size, largest = problem.size, max(largest, largest_traction(problem))
+    for edge, (fractions, traction) in zip(problem.edges, _tractions(problem), strict=True):
         if not traction.any():
             continue
         fractions, traction = fractions[traction.any(axis=1)], traction[traction.any(axis=1)]
