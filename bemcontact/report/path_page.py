@@ -27,7 +27,8 @@ MOST_ROWS = 500
 """Largest number of breakpoints on a page; path.csv has all."""
 CAPTIONS = {
     "problem": "What was asked, at the end of the path",
-    "animation": "The path: the body to scale, with the pressure on its contact, above the peak pressure",
+    "animation": "The path: the body to scale, with the pressure on its contact, above the peak pressure; if that is "
+    "infinite, above the forces",
     "states": "The body to scale, with the pressure on its contact, at four values from start to end of the path",
     "peak": "Peak pressure; dots are breakpoints, hollow ones have an error larger than asked, or not known",
     "force": "Force of each contact on the body",

@@ -126,8 +126,9 @@ def _written(axes: Axes, path: ParameterPath, t: float, result: Result, stress: 
     """Write parameter, peak, breakpoints and forces above a frame."""
     passed = int(np.searchsorted(path.path.parameter, t, side="right"))
     peak = float(result.pressure.max(initial=0.0))
-    at_peak = f"infinite in {', '.join(path.infinite)}" if path.infinite else f"{_rounded(peak)} {stress}"
     sizes = {zone: float(np.hypot(*force)) for zone, force in result.forces.items()}
+    infinite = [zone for zone in path.infinite if sizes[zone]]
+    at_peak = f"infinite in {', '.join(infinite)}" if infinite else f"{_rounded(peak)} {stress}"
     if len(sizes) == 1 or len(sizes) > NAMED:
         forces = ("force " if len(sizes) == 1 else "sum of forces ") + _rounded(sum(sizes.values()))
     else:
