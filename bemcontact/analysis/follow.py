@@ -103,10 +103,13 @@ def follow(
 
 
 def _result(followed: FollowedPath, accuracy: Accuracy, t: float) -> Result:
-    """The state at t of a path as a result."""
+    """The state at t of a path as a result; pressures are infinite only in zones that have some."""
     solution = followed.path.at(t)
     condensation, boundary = followed.state(t, solution)
-    here = Prepared(contact=condensation.contact, condensation=condensation, accuracy=accuracy)
+    contact = condensation.contact
+    pressed = {contact.zone_names[i] for i in np.unique(contact.zone[solution.pressure > 0])}
+    accuracy = replace(accuracy, bars=tuple(bar for bar in accuracy.bars if bar.zone in pressed))
+    here = Prepared(contact=contact, condensation=condensation, accuracy=accuracy)
     return assessed(here, solution, Weights.TRIBUTARY, Stopwatch(), boundary=boundary)
 
 

@@ -127,7 +127,7 @@ def _written(axes: Axes, path: ParameterPath, t: float, result: Result, stress: 
     passed = int(np.searchsorted(path.path.parameter, t, side="right"))
     peak = float(result.pressure.max(initial=0.0))
     sizes = {zone: float(np.hypot(*force)) for zone, force in result.forces.items()}
-    infinite = [zone for zone in path.infinite if sizes[zone]]
+    infinite = result.accuracy.infinite
     at_peak = f"infinite in {', '.join(infinite)}" if infinite else f"{_rounded(peak)} {stress}"
     if len(sizes) == 1 or len(sizes) > NAMED:
         forces = ("force " if len(sizes) == 1 else "sum of forces ") + _rounded(sum(sizes.values()))

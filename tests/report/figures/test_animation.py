@@ -124,6 +124,8 @@ def test_a_peak_is_infinite_only_where_something_presses():
     words = [text.splitlines()[1] for text in words_of(figures.draw_animation(path))]
     assert words[0] == "peak pressure 0 MPa"
     assert words[-1] == "peak pressure infinite in foot"
+    first, *_, last = figures.figure_of_states(figures.states_on(path)).axes
+    assert [axes.get_title("left").splitlines()[1] for axes in (first, last)] == ["no contact", "infinite in foot"]
 
 
 @pytest.mark.slow
