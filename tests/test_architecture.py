@@ -65,6 +65,7 @@ HOME = {
     ),
     "clarabel": ("bemcontact.formulations.clarabel",),
     "matplotlib": ("bemcontact.report.figures",),
+    "PIL": ("bemcontact.report.figures.animation",),
     "typer": ("bemcontact.cli",),
     "numba": ("bemcontact.bem.compiled",),
     "meshio": ("bemcontact.report.vtk",),

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from numbers import Real
 from typing import Any, Unpack
 
@@ -13,7 +14,8 @@ from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.adaptivity.moved_pairs import may_move
 from bemcontact.analysis.path_states import FollowedPath, errors_at_breakpoints
 from bemcontact.analysis.penetration import penetration_on_path
-from bemcontact.analysis.solve import asked, ensure_acting, ensure_kind
+from bemcontact.analysis.result import Result
+from bemcontact.analysis.solve import Prepared, Stopwatch, asked, assessed, ensure_acting, ensure_kind
 from bemcontact.analysis.variation import Variation, case_of
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
@@ -25,7 +27,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
 from bemcontact.errors import Issue, KeyPath, ProblemError, SingularSystemError, SolverError
 from bemcontact.formulations import complementarity
-from bemcontact.options import AskingKeywords
+from bemcontact.options import AskingKeywords, Weights
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.parametric.path import COMMON, SAME, ensure_same_body, load_path
 from bemcontact.parametric.sensitivity import Sensitivities
@@ -42,6 +44,8 @@ PLACED = {
     "contacts": ("between",),
 }
 """Parts of several bodies and of their contacts that make or place bodies."""
+BETWEEN = "errors between the breakpoints of a path are not estimated"
+"""Why the mesh of a state on a path is not assessed."""
 SHARES = tuple(0.5**k for k in range(1, 11))
 """Shares of the way between two values, at which gaps and loads are checked for linear change."""
 NOTHING = 1e-13
@@ -94,7 +98,19 @@ def follow(
     return ParameterPath(
         key=key, start=begin, end=end, path=path, start_accuracy=first, end_accuracy=last,
         penetration=deepest, penetrates_at=at, said=said, breakpoint_bars=bars,
+        result_at=partial(_result, followed, Accuracy(asked=None, reason=BETWEEN).knowing(first, last)),
     )  # fmt: skip
+
+
+def _result(followed: FollowedPath, accuracy: Accuracy, t: float) -> Result:
+    """The state at t of a path as a result; pressures are infinite only in zones that have some."""
+    solution = followed.path.at(t)
+    condensation, boundary = followed.state(t, solution)
+    contact = condensation.contact
+    pressed = {contact.zone_names[i] for i in np.unique(contact.zone[solution.pressure > 0])}
+    accuracy = replace(accuracy, bars=tuple(bar for bar in accuracy.bars if bar.zone in pressed))
+    here = Prepared(contact=contact, condensation=condensation, accuracy=accuracy)
+    return assessed(here, solution, Weights.TRIBUTARY, Stopwatch(), boundary=boundary)
 
 
 @one_thread

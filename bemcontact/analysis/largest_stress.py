@@ -47,6 +47,10 @@ SHALLOW, GRAZING = 0.2, 0.05
 """Depth over the length of the element there up to which a maximum is one of the boundary, and a search ends."""
 AROUND = np.array([[x, y] for x in (0, -1, 1) for y in (0, -1, 1)], float)
 """A point and those around it, in steps."""
+SHIFTED = np.array([[
+    next((i for i, place in enumerate(AROUND.tolist()) if place == (moved + other).tolist()), -1) for other in AROUND
+] for moved in AROUND])  # fmt: skip
+"""Number that a point around the next place has around the last one, from where the search moved there; or -1."""
 LEVEL = 1e-9
 """Relative difference of stresses that is round-off."""
 RINGS = np.outer([0.5, 0.9], np.exp(2j * np.pi * np.arange(16) / 16)).ravel().view(float).reshape(-1, 2)
@@ -243,10 +247,11 @@ class _Search:
         """
         points, step, least = points.copy(), step.copy(), SETTLED * step
         value, inside = np.zeros(len(points)), np.zeros(len(points), bool)
-        live = np.arange(len(points))
+        live, known = np.arange(len(points)), np.full((len(points), len(AROUND)), np.nan)
         for _ in range(MOST_STEPS):
-            around = points[live, None] + step[live, None, None] * AROUND
-            values = self._values(around.reshape(-1, 2)).reshape(len(live), -1)
+            around, values = points[live, None] + step[live, None, None] * AROUND, known[live]
+            new = np.isnan(values)
+            values[new] = self._values(around[new])
             best, rows = values.argmax(axis=1), np.arange(len(live))
             points[live], value[live] = around[rows, best], values[rows, best]
             inside[live] = (best == 0) & np.isfinite(values).all(axis=1)
@@ -256,6 +261,9 @@ class _Search:
             gained = self._values(further)
             better = gained > value[live[top]]
             points[live[top[better]]], value[live[top[better]]] = further[better], gained[better]
+            seen = (SHIFTED[best] >= 0) & (best > 0)[:, None]
+            known[live] = np.where(seen, np.take_along_axis(values, SHIFTED[best], axis=1), np.nan)
+            known[live, 0] = value[live]
             step[live] = np.where(best == 0, np.maximum(step[live] * SHORTER, least[live]), step[live])
             met = _met(points, value, step)
             value[met] = -np.inf

@@ -16,6 +16,7 @@ from bemcontact.assessment.certificate import CertificateKind, certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
 from bemcontact.bem.condense import Condensation, boundary_state
+from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import ensure_callable, shown
@@ -278,11 +279,11 @@ def assessed(
     weights: Weights,
     watch: Stopwatch,
     searches: RandomStarts | None = None,
+    boundary: BoundaryState | None = None,
 ) -> Result:
-    """Recover the boundary of a solution of a prepared problem, and assess both."""
+    """Recover the boundary of a solution of a prepared problem, unless it is given, and assess both."""
     contact, condensation = prepared.contact, prepared.condensation
-    boundary = None
-    if condensation is not None:
+    if condensation is not None and boundary is None:
         with watch.stage("recovery"):
             boundary = boundary_state(condensation, solution.pressure, solution.rigid_amplitudes)
     with watch.stage("assessment"):

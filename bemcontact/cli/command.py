@@ -34,6 +34,7 @@ UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 MEANT = {
     "--figure": ("plot", "picture", "image", "png", "svg", "pdf", "draw", "graph", "chart", "save-figure", "fig"),
+    "--animation": ("animate", "gif", "movie", "film", "video", "frames"),
     "--out": ("output", "folder", "directory", "dir", "report", "html", "page", "o", "csv", "table", "save", "write"),
     "--accuracy": ("tolerance", "tol", "error", "precision", "eps", "rtol", "epsilon"),
     "--refine": ("mesh", "refinement", "elements", "density", "h", "fine", "n"),
@@ -224,6 +225,10 @@ def _ensure_possible(option: str, path: Path) -> None:
             from bemcontact.report import figures
 
             figures.ensure_known_format(path)
+        case "--animation":
+            from bemcontact.report import figures
+
+            figures.ensure_known_animation(path)
         case "--vtk":
             from bemcontact.report import vtk
 

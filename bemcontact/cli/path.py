@@ -33,6 +33,10 @@ def path(
         Path | None,
         typer.Option(metavar="FOLDER", help="Write path.html, path.csv and path.json.", show_default=False),
     ] = None,
+    animation: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write an animation; ends in .gif or .svg.", show_default=False),
+    ] = None,
     json_file: JsonOption = None,
 ) -> None:
     r"""Follow contact from one value of a parameter to another.
@@ -44,13 +48,13 @@ def path(
     a load case (load_cases.NAME). The exit status is 0 only if the path reaches its end, each state on it is proved to
     be the only one, and the accuracy asked is met at both ends.
 
-    FOLDER gets a page with pictures of peak, forces, moments and ends of contact over the parameter (path.html), a
-    table of them with three rows between two breakpoints (path.csv), all results (path.json), and the problem as run
-    (spec.yaml). An earlier path is replaced.
+    FOLDER gets a page with an animation of the body, and pictures of peak, forces, moments and ends of contact over
+    the parameter (path.html), a table of them with three rows between two breakpoints (path.csv), all results
+    (path.json), and the problem as run (spec.yaml). An earlier path is replaced.
 
     Examples
       bemcontact path models/cylinder_on_plane.yaml \
-        --vary conditions.top.pressure --from 0 --to 50.625
+        --vary conditions.top.pressure --from 0 --to 50.625 --animation roller.gif
       bemcontact path models/cantilever_flat_surface.yaml \
         --vary conditions.top.traction.y --from 0 --to -3.6 --out path
       bemcontact path models/gallery/three_zones.yaml \
@@ -70,11 +74,19 @@ def path(
             room = parsed_path(vary)[:1]
         with by_option("--vary", room, source.located):  # with the value as stated there is no mistake
             followed = follow(problem, vary, to, start)
+
+        def drawn(done: int, of: int) -> None:
+            report("drawing", f"frame {done} of {of}")
+
+        if animation:
+            from bemcontact.report import figures
+
+            figures.save_animation(followed, animation, drawn)
         if out:
             report("drawing", "")
             from bemcontact.report import folder
 
-            folder.save_path(followed, out, problem, source.as_run())
+            folder.save_path(followed, out, problem, source.as_run(), drawn)
         return CommandOutput(
             summary=lambda: path_summary(followed),
             json=followed.to_json,
@@ -82,4 +94,6 @@ def path(
             verdict=shortfall_of(path_verdicts(followed)),
         )
 
-    run("following", work, source=source, folder=out, kind="path", json_file=json_file)
+    run(
+        "following", work, source=source, files={"--animation": animation}, folder=out, kind="path", json_file=json_file
+    )

@@ -2,9 +2,11 @@
 
 import csv
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from importlib import import_module
+from os import PathLike
 
 import numpy as np
 from pydantic import computed_field
@@ -16,7 +18,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.parametric.path import LoadPath
 from bemcontact.serialization import Internal, Leaf, Pair, Pairs
-from bemcontact.views import Tabular
+from bemcontact.views import VIEWS, Tabular
 
 BETWEEN = (0.25, 0.5, 0.75)
 """Fractions between two breakpoints at which intervals are evaluated, because their ends are not linear."""
@@ -101,6 +103,8 @@ class ParameterPath(Leaf, Tabular):
     """Notes on the states."""
     breakpoint_bars: Internal[tuple[tuple[ErrorBar, ...], ...]] = ()
     """Error bars at each breakpoint; empty if errors were not estimated."""
+    result_at: Internal[Callable[[float], object] | None] = None
+    """Gives the `bemcontact.Result` at t from 0 to 1, whose errors are not known; None if the body is not known."""
 
     def __repr__(self) -> str:
         """One line: key, values, the path."""
@@ -150,6 +154,22 @@ class ParameterPath(Leaf, Tabular):
             accuracy.holds if accuracy.holds is None or pressure.any() else True for accuracy, pressure in ends
         )
         return together((self.certified, *of_meshes))
+
+    def animate(self, file: str | PathLike[str]) -> None:
+        """Write an animation of the body with the pressure on its contact, above the peak pressure.
+
+        Parameters
+        ----------
+        file : its name ends in .gif, or in .svg, which needs no script
+
+        Raises
+        ------
+        ProblemError
+            The file name has another ending, or the path ends where it begins.
+        OSError
+            The file cannot be written.
+        """
+        import_module(VIEWS).animate(self, file)
 
     def value(self, t: float) -> float:
         """The parameter at t of the path; round-off of its ends counts as zero."""

@@ -3,7 +3,7 @@
 import json
 import re
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,12 +24,17 @@ from bemcontact.problems import Problem
 from bemcontact.report import design_page, page, path_page, result_page, study_page
 from bemcontact.report import reproduction as paper_page
 from bemcontact.report.figures import (
+    animated_graphic,
+    can_be_animated,
+    draw_animation,
+    figure_of_states,
     figures_of,
     figures_of_design,
     figures_of_path,
     figures_of_reproduction,
     figures_of_study,
     pictures_of,
+    states_on,
     vector_graphic,
 )
 from bemcontact.report.zones import tables_of
@@ -95,7 +100,7 @@ PATH = Contents(
     page="path.html",
     numbers="path.json",
     others=("path.csv", "spec.yaml"),
-    picture=re.compile(r"(problem|peak|force|moment|pressure|contact-\d+)\.svg"),
+    picture=re.compile(r"(problem|animation|states|peak|force|moment|pressure|contact-\d+)\.svg"),
     keys=frozenset({"key", "start", "end", "states"}),
 )
 """Folder of a load path."""
@@ -193,14 +198,24 @@ def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
         pass
 
 
-def save_path(path: ParameterPath, folder: Path, problem: Problem | None = None, spec: str | None = None) -> None:
+def save_path(
+    path: ParameterPath,
+    folder: Path,
+    problem: Problem | None = None,
+    spec: str | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> None:
     """Write a load path as a folder: page, table, numbers, pictures, spec if given.
 
-    The page describes the problem if it is given; it is drawn with the value at the end of the path.
+    The page describes the problem if it is given; it is drawn with the value at the end of the path. `progress` is
+    called with the number of frames of the animation that are drawn, and that of all.
     """
     ensure_folder_writable(folder, PATH)
     drawn = None if problem is None else Variation(_on_some_mesh(problem), path.key).at(path.end)
     pictures = {name: vector_graphic(figure) for name, figure in figures_of_path(path, drawn).items()}
+    if can_be_animated(path):
+        pictures["animation"] = animated_graphic(draw_animation(path, progress))
+        pictures["states"] = vector_graphic(figure_of_states(states_on(path)))
     text = path_page.render(path, pictures, problem, spec)
     with _written(folder, PATH, text, path.to_json(), pictures) as temporary:
         (temporary / "path.csv").write_text(path.to_csv(), encoding="utf-8", newline="\n")

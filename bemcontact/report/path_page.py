@@ -27,6 +27,9 @@ MOST_ROWS = 500
 """Largest number of breakpoints on a page; path.csv has all."""
 CAPTIONS = {
     "problem": "What was asked, at the end of the path",
+    "animation": "The path: the body to scale, with the pressure on its contact, above the peak pressure; if that is "
+    "infinite, above the forces",
+    "states": "The body to scale, with the pressure on its contact, at four values from start to end of the path",
     "peak": "Peak pressure; dots are breakpoints, hollow ones have an error larger than asked, or not known",
     "force": "Force of each contact on the body",
     "moment": "Moment of each contact on the body, about (0, 0); errors of moments are not estimated",
@@ -56,7 +59,7 @@ def render(path: ParameterPath, pictures: Mapping[str, bytes], problem: Problem 
         end=number(path.end),
         description=problem_in_words(problem) if problem else [],
         surfaces=zone_surfaces(problem) if problem else [],
-        pictures=[(name, _picture(name, svg, path, problem)) for name, svg in pictures.items()],
+        pictures={name: _picture(name, svg, path, problem) for name, svg in pictures.items()},
         zones=path.zones,
         units=units,
         rows=[*_rows(path)],

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from importlib import import_module
 from importlib.util import find_spec
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,8 @@ import numpy as np
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.comparison import Comparison
-from bemcontact.errors import ProblemError
+from bemcontact.checks.arguments import file_path
+from bemcontact.errors import OptionError, ProblemError
 from bemcontact.modelling.gap_design.designed_gap import GapDesign
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.problems import Problem
@@ -35,6 +37,16 @@ def html(item: Any) -> str:
     picture = figures.vector_graphic(picture_of(item)) if _has_picture(item) else b""
     image = f"<img alt='' src='data:image/svg+xml;base64,{base64.b64encode(picture).decode()}'>" if picture else ""
     return f"<div>{image}{_table(item)}</div>"
+
+
+def animate(path: ParameterPath, file: str | PathLike[str]) -> None:
+    """Write the animation of a path; see `ParameterPath.animate`."""
+    place = file_path(file, "file")
+    try:
+        figures.ensure_known_animation(place)
+    except ValueError as error:
+        raise OptionError(str(error)) from None
+    figures.save_animation(path, place)
 
 
 def _table(item: Any) -> str:

@@ -321,3 +321,27 @@ def test_searches_that_are_left_out_would_find_nothing_larger(monkeypatch: pytes
     assert few.inside.value == pytest.approx(every.inside.value, rel=largest_stress.TOLD_APART)
     assert few.shear["stop"].value == pytest.approx(every.shear["stop"].value, rel=largest_stress.TOLD_APART)
     assert few.missing == every.missing
+
+
+@pytest.mark.slow
+def test_no_search_evaluates_a_place_twice(monkeypatch: pytest.MonkeyPatch):
+    """Searches evaluate the same places anew only where one comes to those of another."""
+    asked, evaluate = [], largest_stress._Search._values
+    monkeypatch.setattr(
+        largest_stress._Search, "_values", lambda search, points: asked.append(points) or evaluate(search, points)
+    )
+    monkeypatch.setattr(largest_stress, "SEARCHES", 1)
+    climb = largest_stress._Search._climb
+    twice = []
+
+    def alone(search, points, step):
+        asked.clear()
+        ends = climb(search, points, step)
+        places = np.concatenate([each for each in asked if len(each)])
+        near = KDTree(places).query_pairs(1e-6 * step.min())
+        twice.append(len(near) / len(places))
+        return ends
+
+    monkeypatch.setattr(largest_stress._Search, "_climb", alone)
+    largest_of(indented(0.03, 1e-2)[0])
+    assert max(twice) == 0

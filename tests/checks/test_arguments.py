@@ -46,6 +46,7 @@ CONTACT = replace(random_contact(0, 4, 1), name="four points")
 PAIR = CondensedContact.from_compliance(np.eye(2), -np.ones(2))
 MODEL = bemcontact.model(CONTACT)
 PATH = bemcontact.load_path(BODY.with_factors({"wind": 0}), BODY.with_factors({"wind": 1}))
+FOLLOWED = bemcontact.follow(ON_ITS_MESH, "conditions.top.pressure", to=1.0)
 DESIGN = bemcontact.design_gap(CONTACT, Relief(lower=0.0, upper=0.1))
 RESULT = bemcontact.solve(CONTACT)
 FREE = bemcontact.sensitivities(CONTACT, ["initial_gap[0]"])
@@ -74,6 +75,7 @@ CALLS: dict[str, Call] = {
     "StressOperator.at": (OPERATOR.at, {"pressure": np.ones(5), "amplitudes": None, "factors": None}),
     "Result.stress": (SOLVED.stress, {"points": [[1, 0.5]]}),
     "Result.displacement": (SOLVED.displacement, {"points": [[1, 0.5]]}),
+    "ParameterPath.animate": (FOLLOWED.animate, {"file": "path.mp4"}),
     "solve": (
         bemcontact.solve,
         {

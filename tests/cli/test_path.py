@@ -78,13 +78,27 @@ def test_folder_gets_picture_table_and_numbers(tmp_path: Path):
         answer = run(CYLINDER, "--vary", PRESSURE, "--to", 45, "--out", place, "--json", tmp_path / "path.json")
         assert answer.exit_code == 0, answer.stderr
     assert {item.name for item in place.iterdir()} == {"path.html", "path.csv", "path.json", "spec.yaml", "figures"}
-    pictures = {"problem", "peak", "force", "moment", "contact-1", "pressure"}
+    pictures = {"problem", "animation", "states", "peak", "force", "moment", "contact-1", "pressure"}
     assert {item.stem for item in (place / "figures").iterdir()} == pictures
     assert (place / "path.json").read_text(encoding="utf-8") == (tmp_path / "path.json").read_text(encoding="utf-8")
     told = json.loads((place / "path.json").read_text(encoding="utf-8"))
     assert (told["key"], told["start"], told["end"], told["certified"]) == (PRESSURE, 50.625, 45.0, True)
     assert len((place / "path.csv").read_text(encoding="utf-8").splitlines()) == 1 + len(told["states"])
     assert "prefers-color-scheme: dark" in (place / "figures" / "peak.svg").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_an_animation_is_written_by_the_ending_of_its_name(tmp_path: Path):
+    answer = run(CYLINDER, "--vary", PRESSURE, "--to", 45, "--animation", tmp_path / "roller.gif", variant="paper")
+    assert answer.exit_code == 0, answer.stderr
+    assert (tmp_path / "roller.gif").read_bytes()[:6] == b"GIF89a"
+
+
+def test_an_animation_with_another_ending_is_refused_before_any_work(tmp_path: Path):
+    answer = run(CYLINDER, "--vary", PRESSURE, "--to", 45, "--animation", tmp_path / "roller.mp4")
+    assert answer.exit_code == 2
+    assert_states(answer.stderr, "error: --animation: … roller.mp4: … must end in .gif or .svg")
+    assert not [*tmp_path.iterdir()]
 
 
 def test_foreign_folder_is_left_alone(tmp_path: Path):

@@ -138,6 +138,24 @@ def test_a_picture_is_transparent_and_its_ink_follows_the_page(chromium: Browser
     assert dark != pytest.approx(light, abs=0.02)
 
 
+@pytest.mark.parametrize("report", ["path"], indirect=True)
+@pytest.mark.slow
+def test_an_animation_is_stopped_by_its_box_and_on_paper_and_where_motion_is_not_wanted(
+    chromium: Browser, report: Path
+):
+    shown = "['.moving', '.still'].map(name => [...document.querySelectorAll(name)].map(it => it.checkVisibility()))"
+    with opened(chromium, report, width=1200) as (page, complaints):
+        assert page.evaluate(shown) == [[True, True], [False, False]]
+        page.get_by_label("show four states").check()
+        assert page.evaluate(shown) == [[False, False], [True, True]]
+        page.get_by_label("show four states").uncheck()
+        page.emulate_media(media="print")
+        assert page.evaluate(shown) == [[False, False], [True, True]]
+        page.emulate_media(media="screen", reduced_motion="reduce")
+        assert page.evaluate(shown) == [[False, False], [True, True]]
+    assert complaints == []
+
+
 def test_a_long_number_is_not_cut_on_a_telephone(chromium: Browser, written: Callable[[str], Path]):
     """A force with its error and its unit is wider than what its label leaves of a card."""
     with opened(chromium, written("cases") / "result.html", width=380) as (page, _):

@@ -52,7 +52,7 @@ def test_the_page_needs_no_other_file_and_an_earlier_one_is_replaced(link: Param
     page = (tmp_path / "path" / "path.html").read_text(encoding="utf-8")
     reader = read(page)
     ensure_self_contained(page, reader)
-    assert page.count("<img ") == len([*(tmp_path / "path" / "figures").iterdir()]) == 5 + len(link.zones)
+    assert page.count("<img ") == len([*(tmp_path / "path" / "figures").iterdir()]) == 7 + len(link.zones)
     assert "conditions.loaded.pressure goes from 0 to 20." in reader.text
     assert "&lt;x&gt;" in page
     assert "circle about" in reader.text
@@ -62,7 +62,7 @@ def test_the_page_needs_no_other_file_and_an_earlier_one_is_replaced(link: Param
     folder.save_path(link, tmp_path / "path")
     again = contents(tmp_path / "path")
     assert before.keys() - again.keys() == {"spec.yaml", "figures/problem.svg"}
-    assert len(again) == 3 + 4 + len(link.zones)  # page, table, numbers; pictures
+    assert len(again) == 3 + 6 + len(link.zones)  # page, table, numbers; pictures
     for name in again.keys() - {"path.html"}:  # which no longer shows the problem
         assert again[name] == before[name], name
     assert render(link, {}, LINK, "name: x") == render(link, {}, LINK, "name: x")

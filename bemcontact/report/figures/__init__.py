@@ -3,6 +3,15 @@
 Each ``draw_...`` function draws into axes that it is given; each ``figure_of_...`` composes a page of them.
 """
 
+from bemcontact.report.figures.animation import (
+    ANIMATIONS,
+    animated_graphic,
+    can_be_animated,
+    draw_animation,
+    ensure_known_animation,
+    save_animation,
+    states_on,
+)
 from bemcontact.report.figures.comparison import draw_differences, draw_gaps, draw_pressures
 from bemcontact.report.figures.contact import close_ups, draw_contact
 from bemcontact.report.figures.deformed import draw_deformed
@@ -24,7 +33,7 @@ from bemcontact.report.figures.path import (
     figure_of_path,
     figures_of_path,
 )
-from bemcontact.report.figures.pictures import figure_of, pictures_of
+from bemcontact.report.figures.pictures import figure_of, figure_of_states, pictures_of
 from bemcontact.report.figures.problem import draw_problem, figure_of_problem
 from bemcontact.report.figures.reproduction import draw_against, figures_of_reproduction
 from bemcontact.report.figures.result import (
@@ -37,9 +46,13 @@ from bemcontact.report.figures.study import draw_output, figures_of_study
 from bemcontact.report.figures.vector_graphic import vector_graphic
 
 __all__ = [
+    "ANIMATIONS",
     "FORMATS",
+    "animated_graphic",
+    "can_be_animated",
     "close_ups",
     "draw_against",
+    "draw_animation",
     "draw_case_pressures",
     "draw_contact",
     "draw_convergence",
@@ -59,6 +72,7 @@ __all__ = [
     "draw_relieved_pressure",
     "draw_resultants",
     "draw_states",
+    "ensure_known_animation",
     "ensure_known_format",
     "figure_of",
     "figure_of_cases",
@@ -66,6 +80,7 @@ __all__ = [
     "figure_of_path",
     "figure_of_problem",
     "figure_of_result",
+    "figure_of_states",
     "figures_of",
     "figures_of_design",
     "figures_of_path",
@@ -75,5 +90,7 @@ __all__ = [
     "new_page",
     "pictures_of",
     "save",
+    "save_animation",
+    "states_on",
     "vector_graphic",
 ]

@@ -116,13 +116,15 @@ class Fan:
 class Setting:
     """What pictures side by side share: a window, two corners (2, 2), and the pressure and length of the longest fan.
 
-    A `part` of the body that a close-up shows has no supports and no loads.
+    A `part` of the body that a close-up shows has no supports and no loads. The longest arrow is that of the largest
+    traction in each picture, or of a `load` in all.
     """
 
     window: Array
     pressure: float
     length: float
     part: bool
+    load: float = 0.0
 
     @property
     def size(self) -> float:
@@ -218,10 +220,10 @@ def sketch_contact(
     symbols = list[Array]()
     if not part:
         displacement = _displacement(state)
-        symbols = [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement)]
+        symbols = [*draw_supports(axes, problem, displacement), *draw_loads(axes, problem, displacement, setting.load)]
         symbols += draw_weights(axes, problem, displacement)
     infinite, scale, length = result.accuracy.infinite, setting.pressure, setting.length
-    names, tips = list[Name](), list[Array]()
+    names, tips, largest = list[Name](), list[Array](), ""
     touched = {fan.zone for fan in fans}
     for fan in fans:
         tips.append(fan.feet - length * np.minimum(fan.pressure / scale, 1.0)[:, None] * fan.normals)
@@ -231,7 +233,9 @@ def sketch_contact(
             continue  # numbers of more contacts could not be told apart
         if fan.zone not in infinite:
             text = with_unit(_peak_text(fan, fans, result.accuracy.peak_bar(fan.zone)), plain(units.stress))
-            text = f"{short_label(fan.zone, 24)}: {text}" if crowded else text
+            if crowded:
+                largest = f"\nlargest pressure: {short_label(fan.zone, 24)}, {text}"
+                continue
             names.append(_label(fan, tips[-1], text, cut=fan.peak > scale * (1 + LEVEL)))
         elif fan.peak == max(other.peak for other in fans if other.zone == fan.zone):
             names.append(_label(fan, tips[-1], "infinite", cut=True))
@@ -241,7 +245,9 @@ def sketch_contact(
     if not part:
         names += [*body_names(problem, bodies, optional=True), *_surface_names(axes, problem, surfaces, HATCH * size)]
     if len(fans) < len(every):
-        name_axis(axes.xaxis, f"{axes.get_xlabel()}\n{len(fans)} of {len(every)} contacts of this zone")
+        largest += f"\n{len(fans)} of {len(every)} contacts of this zone"
+    if largest:
+        name_axis(axes.xaxis, axes.get_xlabel() + largest)
     if stress is not None:
         fill_with_stress(axes, result, stress, window=window if part else None)
 
@@ -410,21 +416,19 @@ def _around(feet: Array) -> Array:
 
 def _label(fan: Fan, tips: Array, text: str, *, cut: bool) -> Name:
     """Text on the peak of a fan, to be placed beyond its tip in the middle of a level stretch, or in a hole."""
-    if fan.closed:
-        middle = tips.mean(axis=0, keepdims=True)
-        return Name(text=text.replace(" ", "\n"), color=BLACK, anchors=middle, directions=np.zeros((1, 2)))
     highest = np.flatnonzero(fan.pressure >= (1 - LEVEL) * fan.peak)
     at = int(highest[len(highest) // 2])
     outward, across = -fan.normals[at], fan.normals[at, ::-1] * (1, -1)
     turns = np.radians((0, 45, -45, 90, -90, 22, -22, 67, -67, 110, -110))[:, None]
     directions = np.cos(turns) * outward + np.sin(turns) * across
-    return Name(
-        text=text + (",\nfan cut off" if cut else ""),
-        color=BLACK,
-        anchors=np.tile(tips[at], (len(turns), 1)),
-        directions=directions,
-        named=tips,
-    )
+    anchors, area = np.tile(tips[at], (len(turns), 1)), np.concatenate([fan.feet, tips[::-1]])
+    if fan.closed:
+        text, area = text.replace(" ", "\n"), tips
+        anchors, directions = np.vstack([tips.mean(axis=0), anchors]), np.vstack([np.zeros(2), directions])
+    elif np.isfinite(fan.longest(fan.peak)):  # in a hole there is little room
+        text = text.replace(" ±", "\n±")
+    text += ",\nfan cut off" if cut else ""
+    return Name(text=text, color=BLACK, anchors=anchors, directions=directions, named=tips, area=area)
 
 
 def _displacement(state: BoundaryState) -> Displacement:

@@ -1,6 +1,6 @@
 """The picture of all load cases: contact and stress of each, their pressures and the envelope of these."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -63,7 +63,7 @@ def figure_of_cases(cases: CaseResults, stress: StressMeasure = StressMeasure.VO
     """Compose a page with contact and stress of each load case, and the pressures of all with their envelope."""
     shown, first = shown_cases(cases), next(iter(cases.results.values()))
     panels = panels_of([*cases.results.values()])
-    columns, rows, height = grid_of(shown, first, INCHES)
+    columns, rows, height = grid_of(len(shown), first, INCHES)
     bodies = 2 * [rows * height] if rows else []
     heights = [*bodies, ROW * len(panels)]
     figure = new_page(INCHES, 0.8 + sum(heights))
@@ -74,14 +74,16 @@ def figure_of_cases(cases: CaseResults, stress: StressMeasure = StressMeasure.VO
         below.suptitle(words, x=0.01, ha="left", fontsize=10, color=GREY)
     entitle(figure, f"{wrapped(cases.name, 6 * INCHES)}: all load cases", case_verdicts(cases), 9 * INCHES)
     if above:
-        draw_case_contacts(places_of(above[0], shown, rows, columns), cases, shown)
-        draw_case_stresses(places_of(above[1], shown, rows, columns), cases, shown, stress)
+        draw_case_contacts(
+            places_of(above[0], len(shown), rows, columns), {name: cases.results[name] for name in shown}
+        )
+        draw_case_stresses(places_of(above[1], len(shown), rows, columns), cases, shown, stress)
     return figure
 
 
-def places_of(figure: Figure | SubFigure, shown: Sequence[str], rows: int, columns: int) -> list[Axes]:
-    """Axes for each load case, row by row."""
-    return [figure.add_subplot(rows, columns, place) for place in range(1, len(shown) + 1)]
+def places_of(figure: Figure | SubFigure, count: int, rows: int, columns: int) -> list[Axes]:
+    """So many axes, row by row."""
+    return [figure.add_subplot(rows, columns, place) for place in range(1, count + 1)]
 
 
 def shown_cases(cases: CaseResults) -> list[str]:
@@ -96,24 +98,24 @@ def shown_cases(cases: CaseResults) -> list[str]:
     return [name for name in cases.results if name in most]
 
 
-def grid_of(shown: Sequence[str], first: Result, inches: float) -> tuple[int, int, float]:
-    """Columns, rows, and inches of a row of the pictures of so many load cases, side by side in a width in inches."""
-    if not shown or first.boundary is None:
+def grid_of(count: int, first: Result, inches: float) -> tuple[int, int, float]:
+    """Columns, rows, and inches of a row of the pictures of so many results, side by side in a width in inches."""
+    if not count or first.boundary is None:
         return 1, 0, 0.0
     width, height = body_extent(first.boundary)
-    columns = 2 if len(shown) in (2, 4) or width > 2 * WIDE * height else min(len(shown), 3)
-    return columns, -(-len(shown) // columns), float(np.clip(0.9 * inches / columns * height / width + 1.0, 1.8, 4.5))
+    columns = 2 if count in (2, 4) or width > 2 * WIDE * height else min(count, 3)
+    return columns, -(-count // columns), float(np.clip(0.9 * inches / columns * height / width + 1.0, 1.8, 4.5))
 
 
-def draw_case_contacts(places: Sequence[Axes], cases: CaseResults, shown: Sequence[str]) -> None:
-    """Draw the contact of load cases; the bodies of all have one scale, and so have their fans.
+def draw_case_contacts(places: Sequence[Axes], cases: Mapping[str, Result]) -> None:
+    """Draw the contact of results, each with its name; the bodies of all have one scale, and so have their fans.
 
     If the only zone is small beside the body in all of them, and at much the same place, close-ups are drawn.
     """
-    results = [cases.results[name] for name in shown]
-    zone = _close_zone(results)
+    results = [*cases.values()]
+    zone = close_zone(results)
     setting, writers = setting_of(results, zone), list[Callable[[], None]]()
-    for axes, name, result in zip(places, shown, results, strict=True):
+    for axes, (name, result) in zip(places, cases.items(), strict=True):
         axes.set_title(f"{short_label(name, 30)}\n{_peak(result)}", loc="left", fontsize=9)
         writers.append(sketch_contact(axes, result, zone, setting, numbers=False))  # there is no room for more
     _align(places, framed=zone is not None)
@@ -148,7 +150,7 @@ def draw_case_stresses(places: Sequence[Axes], cases: CaseResults, shown: Sequen
     figure.suptitle(title, x=0.01, ha="left", fontsize=10)
 
 
-def _close_zone(results: Sequence[Result]) -> str | None:
+def close_zone(results: Sequence[Result]) -> str | None:
     """The only zone, if one close-up shows its contact under all load cases."""
     first, touching = results[0], [result for result in results if result.touching.any()]
     zones = first.contact.zone_names

@@ -41,6 +41,8 @@ ROUND_OFF = 1e-12
 """Share of the largest force, or moment, that pressures could have, which is no result."""
 SEEN = 0.2
 """Share of the height of a panel from which on a pressure is seen well."""
+MOST_WIDE = 5.0
+"""Largest width of a line."""
 SHADE = 0.15
 """Opacity of stretches in contact."""
 
@@ -193,7 +195,8 @@ def _draw_by_zone(axes: Axes, path: ParameterPath, numbers: list[list[float]], s
     begin_at_left(axes, path)
     for order, zone in enumerate(path.zones):
         heights = [row[order] if abs(row[order]) > ROUND_OFF * scale else 0.0 for row in numbers]
-        _draw_line(axes, path, heights, CYCLE[order % len(CYCLE)], plain(zone))
+        width = 1.4 + 1.6 * (len(path.zones) - 1 - order)  # so that each of equal lines is seen
+        _draw_line(axes, path, heights, CYCLE[order % len(CYCLE)], plain(zone), min(width, MOST_WIDE))
     if len(path.zones) > 1:
         axes.legend(frameon=False, fontsize=8.5)
 
@@ -238,10 +241,12 @@ def _draw_errors(axes: Axes, known: Iterable[tuple[float, float, float]], color:
         axes.vlines(values, heights - errors, heights + errors, color=color, linewidth=1.0)
 
 
-def _draw_line(axes: Axes, path: ParameterPath, heights: list[float], color: str, label: str) -> None:
+def _draw_line(
+    axes: Axes, path: ParameterPath, heights: list[float], color: str, label: str, width: float = 1.4
+) -> None:
     """Draw a quantity with a dot at each breakpoint."""
     values = [state.value for state in path.states]
-    axes.plot(values, heights, color=color, linewidth=1.4, label=label)
+    axes.plot(values, heights, color=color, linewidth=width, label=label)
     dots = [(value, y) for state, value, y in zip(path.states, values, heights, strict=True) if state.breakpoint]
     axes.plot(*zip(*dots, strict=True), color=color, linestyle="none", marker="o", markersize=2.6)
 

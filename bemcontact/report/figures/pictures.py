@@ -1,6 +1,6 @@
 """The pictures for the page of a result or of all load cases, and the one picture of either."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -82,26 +82,31 @@ def pictures_of(results: Result | CaseResults, stress: StressMeasure = StressMea
 def figure_of_contacts(cases: CaseResults) -> Figure:
     """Compose a picture with the contact of each load case alone."""
     shown = shown_cases(cases)
-    figure, places = _small_multiples(cases, shown)
-    draw_case_contacts(places, cases, shown)
+    return figure_of_states({name: cases.results[name] for name in shown})
+
+
+def figure_of_states(results: Mapping[str, Result]) -> Figure:
+    """Compose a picture with the contact of each of some results of a problem, by name."""
+    figure, places = _small_multiples([*results.values()])
+    draw_case_contacts(places, results)
     return figure
 
 
 def figure_of_stresses(cases: CaseResults, stress: StressMeasure = StressMeasure.VON_MISES) -> Figure:
     """Compose a picture with the stress on the deformed shape of each load case alone."""
     shown = shown_cases(cases)
-    figure, places = _small_multiples(cases, shown)
+    figure, places = _small_multiples([cases.results[name] for name in shown])
     draw_case_stresses(places, cases, shown, stress)
     return figure
 
 
-def _small_multiples(cases: CaseResults, shown: Sequence[str]) -> tuple[Figure, list[Axes]]:
-    """A page with axes for each load case: as wide as other pictures for a few, or twice as wide."""
-    first = next(iter(cases.results.values()))
-    inches = WIDTH if grid_of(shown, first, WIDTH)[0] < 3 else DOUBLE
-    columns, rows, height = grid_of(shown, first, inches)
+def _small_multiples(results: Sequence[Result]) -> tuple[Figure, list[Axes]]:
+    """A page with axes for each result: as wide as other pictures for a few, or twice as wide."""
+    count, first = len(results), results[0]
+    inches = WIDTH if grid_of(count, first, WIDTH)[0] < 3 else DOUBLE
+    columns, rows, height = grid_of(count, first, inches)
     figure = new_page(inches, rows * height)
-    return figure, places_of(figure, shown, rows, columns)
+    return figure, places_of(figure, count, rows, columns)
 
 
 def _legend_outside(axes: Axes) -> None:

@@ -1,7 +1,7 @@
 """The picture of a problem: geometry, mesh, conditions, loads, rigid surfaces and tools."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import cycle
 
 import numpy as np
@@ -69,6 +69,8 @@ Displacement = Callable[[Array], Array]
 
 ROLES = {"may touch": VERMILION, "bonded": PURPLE, "held": BLUE, "loaded": GREEN, "free": BLACK}
 """Role of an edge -> color."""
+APART = 0.6
+"""Least distance of an arrow from those between places where the load jumps, over the distance of arrows."""
 ALONG = 0.3
 """Largest share of a traction across the edge with which it is drawn as one along the edge."""
 FREE = Condition(traction=AxisFields(x=Field(constant=0.0)))
@@ -245,10 +247,16 @@ def _spread(edge: Edge, size: float, spots: int, fewest: int = 2) -> Array:
 
 
 def _loaded(problem: Problem, edge: Edge) -> Array:
-    """Fractions (k,) for arrows: those of `_spread`, and some between places where the load jumps or kinks."""
-    stops = np.array([0.0, *problem.load_stops(edge), edge.length]) / edge.length
-    between = (stops[:-1, None] + np.diff(stops)[:, None] * [0.1, 0.5, 0.9]).ravel() if len(stops) > 2 else []
-    return np.unique(np.append(_spread(edge, problem.size, 20), between))
+    """Fractions (k,) for arrows: some between places where the load jumps or kinks, and those of `_spread` off them."""
+    stops, spread = (
+        np.array([0.0, *problem.load_stops(edge), edge.length]) / edge.length,
+        _spread(edge, problem.size, 20),
+    )
+    if len(stops) == 2:
+        return spread
+    between = (stops[:-1, None] + np.diff(stops)[:, None] * [0.1, 0.5, 0.9]).ravel()
+    apart = np.abs(spread[:, None] - between).min(axis=1) > APART / len(spread)
+    return np.sort(np.append(spread[apart], between))
 
 
 def draw_supports(axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like) -> Iterator[Array]:
@@ -290,16 +298,27 @@ def _draw_springs(axes: Axes, edge: Edge, springs: Springs, displacement: Displa
         yield draw_springs(axes, points + displacement(points) + beside, away, 0.045 * size, BLUE)
 
 
-def draw_loads(axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like) -> Iterator[Array]:
+def largest_traction(problem: Problem) -> float:
+    """The largest prescribed traction that is drawn [p]."""
+    return max(float(np.hypot(*traction.T).max()) for _, traction in _tractions(problem))
+
+
+def _tractions(problem: Problem) -> list[tuple[Array, Array]]:
+    """Fractions (k,) of each edge at which arrows stand, and the prescribed tractions (k, 2) there."""
+    across = [_loaded(problem, edge) for edge in problem.edges]
+    return [(at, _traction(problem, edge, at)) for edge, at in zip(problem.edges, across, strict=True)]
+
+
+def draw_loads(
+    axes: Axes, problem: Problem, displacement: Displacement = np.zeros_like, largest: float = 0.0
+) -> Iterator[Array]:
     """Draw prescribed tractions as arrows to one scale; they end on the body if they push, start there if they pull.
 
-    Tractions along an edge are drawn beside it.
+    Tractions along an edge are drawn beside it. The longest arrow is that of the `largest` traction, if this is larger
+    than those of the problem.
     """
-    size = problem.size
-    across = [_loaded(problem, edge) for edge in problem.edges]
-    tractions = [_traction(problem, edge, at) for edge, at in zip(problem.edges, across, strict=True)]
-    largest = max(float(np.hypot(*traction.T).max()) for traction in tractions)
-    for edge, fractions, traction in zip(problem.edges, across, tractions, strict=True):
+    size, largest = problem.size, max(largest, largest_traction(problem))
+    for edge, (fractions, traction) in zip(problem.edges, _tractions(problem), strict=True):
         if not traction.any():
             continue
         fractions, traction = fractions[traction.any(axis=1)], traction[traction.any(axis=1)]
@@ -441,6 +460,15 @@ def _traction(problem: Problem, edge: Edge, fractions: Array) -> Array:
     return _total(acting, np.zeros_like(points))
 
 
+def _folded(lines: Iterable[str]) -> Iterator[str]:
+    """Lines in which the place of a force stands in a line of its own."""
+    for line in lines:
+        force, over, place = line.partition(" over ")
+        yield force
+        if over:
+            yield f"over {place}"
+
+
 def _name(problem: Problem, edge: Edge, body: int, crowded: bool) -> Name:
     """Prepare the text at an edge of a body: its name, and what is prescribed there; shorter among many bodies."""
     lines = [*prescribed(problem, edge)]
@@ -453,7 +481,7 @@ def _name(problem: Problem, edge: Edge, body: int, crowded: bool) -> Name:
     ends = np.array([0.02, 0.98] if edge.length < SHORT * problem.size else [])
     slanted = (edge.normals(ends) + edge.directions(ends) * np.sign(ends - 0.5)[:, None]) / np.sqrt(2)
     return Name(
-        text="\n".join([wrapped(name, 28), *(_symbols(short_label(line, 40)) for line in lines)]),
+        text="\n".join([wrapped(name, 28), *(_symbols(short_label(line, 40)) for line in _folded(lines))]),
         color=ROLES[role(problem, edge.name)],
         anchors=np.concatenate([anchors, anchors, edge.points(ends)]),
         directions=np.concatenate([-outward, outward, slanted]),

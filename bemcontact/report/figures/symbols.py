@@ -37,11 +37,13 @@ INSET = 5.0
 """Distance of the end of a line inside the border of a name, in pixels of the page."""
 FAR = 30.0
 """Distance of a name from its anchor, in pixels of the page, from which a line leads to it."""
+STEP = 8.0
+"""Distance, in pixels of the page, within which places count as equally near."""
 SHARES = np.linspace(0.05, 1.0, 20)
 """Shares of the way from an anchor to a name at which it must not be in another body."""
-IN_BODY, LOST, ON_HATCHING, BLOCKED = 60.0, 120.0, 200.0, 1000.0
+IN_BODY, LOST, IN_OTHER, ON_HATCHING, BLOCKED = 60.0, 120.0, 150.0, 200.0, 1000.0
 """What a place in a body adds to its distance, in pixels of the page, one behind a rigid line or beyond another name,
-one on hatching, and one beyond another body."""
+one in another body, one on hatching, and one beyond another body."""
 NEXT_BEST = 60.0
 """Distance over the least one up to which a place may be chosen, in pixels of the page."""
 CROSSED = 20
@@ -86,8 +88,9 @@ def least_crowded(centers: Array, size: tuple[float, float], taken: Sequence[Box
 class Name:
     """A text, mathematics between dollars, to be placed near one of the anchors (c, 2), in its direction (c, 2).
 
-    One with a number of a body stands in no other body. One that is optional is left out where there is no room. It
-    names what has the points `named` (k, 2), by default the anchors.
+    One with a number of a body stands in another one only where there is no other place near it. One that is optional
+    is left out where there is no room. It names what has the points `named` (k, 2), by default the anchors. Where there
+    is no room near it, it may stand on what it names, a closed polygon `area` (k, 2), if it fits.
     """
 
     text: str
@@ -97,6 +100,7 @@ class Name:
     body: int | None = None
     optional: bool = False
     named: Array | None = None
+    area: Array | None = None
 
 
 def joined(curves: Array) -> list[Array]:
@@ -203,7 +207,8 @@ def place_names(
         text.set_in_layout(False)  # or the next layout would move what it was placed beside
         extent = text.get_window_extent()
         size = (extent.width + 10, extent.height + 4)
-        chosen = _place(name, size, to_page.transform(name.anchors), frame, taken, ink, walls, rigid)
+        area = None if name.area is None else to_page.transform(name.area)
+        chosen = _place(name, size, to_page.transform(name.anchors), frame, taken, ink, walls, rigid, area)
         if chosen is None:
             text.remove()
             continue
@@ -213,7 +218,8 @@ def place_names(
         ends = _line_ends(named, chosen, size)
         at = int(np.argmin(np.hypot(*(ends - named).T)))
         anchor, end = named[at], ends[at]
-        if name.directions.any() and np.hypot(*(end - anchor)) > FAR:
+        on_it = area is not None and bool(Path(area).contains_points(chosen[None])[0])
+        if name.directions.any() and np.hypot(*(end - anchor)) > FAR and not on_it:
             line = np.array([_to_data(axes, point) for point in (anchor, end)])
             axes.plot(*line.T, color=name.color, linewidth=0.7, alpha=0.7, zorder=5, scalex=False, scaley=False)
             ink = np.concatenate([ink, anchor + np.linspace(0, 1, 100)[:, None] * (end - anchor)])
@@ -229,12 +235,16 @@ def _place(
     ink: Array,
     walls: Sequence[Sequence[Path]],
     grounds: Sequence[Ground],
+    area: Array | None,
 ) -> Array | None:
-    """Center (2,) of a name on the page: beside its anchor, else in free space, else across other names.
+    """Center (2,) of a name on the page: beside its anchor, on its area, in free space, else across other names.
 
     None if it is optional and there is no room.
     """
     anchors, centers = _places(anchors, name.directions, size)
+    away = np.hypot(*(_line_ends(anchors, centers, size) - anchors).T)
+    nearest_first = np.argsort(np.round(away / STEP), kind="stable")  # of wide texts, those to the side are nearer
+    anchors, centers = anchors[nearest_first], centers[nearest_first]
     lines = [wall for loops in walls for wall in loops]
 
     def least(centers: Array) -> Array:
@@ -258,22 +268,28 @@ def _place(
     if name.optional:
         room &= (np.abs(centers - anchors) - np.array(size) / 2).max(axis=1) < FAR
     room[room] = ~_crossed(lines, centers[room], size)
+    on_area = np.zeros((0, 2)) if area is None else _within(area, size)
+    on_area = on_area[free(on_area)]
     if room.any():
-        return least(centers[room])
+        center = least(centers[room])
+        if not len(on_area) or np.hypot(*(_line_ends(anchors, center, size) - anchors).T).min() <= FAR:
+            return center
     if name.optional:
         return None
+    if len(on_area):
+        return on_area[0]
     if name.body is None and beside.any():
         center = least(centers[beside])
         if crowd(centered(center, size), [], ink) < CROSSED:  # it may stand on a little of what is drawn
             return center
     grid = _grid(frame, size)
     others = [loops for body, loops in enumerate(walls) if body != name.body]
-    grid = grid[free(grid) & ~_inside(others, grid).any(axis=0)]
+    grid = grid[free(grid)]
     grid = grid[~_crossed(lines, grid, size)]
     distances = np.hypot(*(grid[:, None] - anchors).transpose(2, 0, 1)).min(axis=1, initial=np.inf)
     nearest = anchors[_nearest_anchor(anchors, grid, size)]
     distances += IN_BODY * _inside(walls, grid).any(axis=0) + LOST * lost(nearest, grid)
-    distances += ON_HATCHING * _hatched(grounds, grid, size)
+    distances += ON_HATCHING * _hatched(grounds, grid, size) + IN_OTHER * _inside(others, grid).any(axis=0)
     if name.body is not None:  # a line through another body would seem to lead to that
         ways = nearest + SHARES[:, None, None] * (grid - nearest)
         distances += BLOCKED * _inside(others, ways.reshape(-1, 2)).any(axis=0).reshape(ways.shape[:2]).any(axis=0)
@@ -345,6 +361,15 @@ def _holds(frame: Bbox, centers: Array, size: tuple[float, float]) -> BoolArray:
     """Whether each text lies inside a frame."""
     half = np.array(size) / 2
     return np.all((centers - half > frame.min) & (centers + half < frame.max), axis=1)
+
+
+def _within(area: Array, size: tuple[float, float]) -> Array:
+    """Centers (c, 2) at which a text of this size is inside a polygon (k, 2), those near its middle first."""
+    if (np.ptp(area, axis=0) < size).any():
+        return np.zeros((0, 2))
+    centers = _grid(Bbox([area.min(axis=0), area.max(axis=0)]), size)
+    corners = centers[:, None] + np.array(size) / 2 * [[-1, -1], [1, -1], [1, 1], [-1, 1]]
+    return centers[Path(area).contains_points(corners.reshape(-1, 2)).reshape(-1, 4).all(axis=1)]
 
 
 def _crossed(walls: Sequence[Path], centers: Array, size: tuple[float, float]) -> BoolArray:

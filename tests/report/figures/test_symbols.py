@@ -1,5 +1,7 @@
 """Labels go where they cover least."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
@@ -118,3 +120,29 @@ def test_the_least_crowded_place_is_that_of_all_points():
         taken = [centered(at, (12.0, 6.0)) for at in rng.uniform(0, 60, (3, 2))]
         all_points = [crowd(centered(at, (10.0, 6.0)), taken, ink) for at in centers]
         assert least_crowded(centers, (10.0, 6.0), taken, ink) == int(np.argmin(all_points))
+
+
+def test_a_wide_name_stands_at_the_side_where_it_is_nearest():
+    """The border is too near for it to stand in the middle above its anchor; aslant it would be far."""
+    axes = new_page(5.0, 5.0).add_subplot()
+    axes.set(xlim=(0, 10), ylim=(0, 10))
+    settle(axes)
+    ways = np.array([[np.sqrt(0.5), np.sqrt(0.5)], [0.0, 1.0]])
+    name = Name(text="a name that is wide", color="black", anchors=np.tile([1.0, 5.0], (2, 1)), directions=ways)
+    place_names(axes, [name], NOTHING, [])
+    assert 5 < axes.texts[0].get_position()[1] < 6
+
+
+@pytest.mark.parametrize("fits", [True, False])
+def test_a_name_without_room_beside_it_stands_on_what_it_names_if_it_fits(fits: bool):
+    """The first name takes the room below both; the second one stands in the middle of its area."""
+    axes = new_page(5.0, 5.0).add_subplot()
+    axes.set(xlim=(0, 10), ylim=(0, 10))
+    settle(axes)
+    area = np.array([[2.0, 2.0], [8.0, 2.0], [8.0, 6.0 if fits else 2.1], [2.0, 6.0 if fits else 2.1]])
+    below, down = np.array([[5.0, 2.0]]), np.array([[0.0, -1.0]])
+    first = Name(
+        text="a name that takes\nthe whole of the room\nthere is", color="black", anchors=below, directions=down
+    )
+    place_names(axes, [first, replace(first, text="number", area=area)], NOTHING, [])
+    assert (axes.texts[1].get_position() == pytest.approx((5, 4))) == fits
