@@ -1,5 +1,6 @@
 """Places on the curves of the edges themselves, by the local coordinates of the elements on them."""
 
+from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,12 +11,12 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
-from bemcontact.problems.body_surface import AnySurface, BodySurface
+from bemcontact.problems.body_surface import AnyShape, AnySurface, BodySurface
 from bemcontact.problems.curves import Edge
 from bemcontact.problems.nearest_places import nearest_places, surface_corners
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import Circle, Plane
-from bemcontact.problems.surface_lines import Polyline, Spline
+from bemcontact.problems.surface_lines import Faces, Polyline, Spline
 
 SAMPLES = np.linspace(-1.0, 1.0, 17)
 """Local coordinates at which the boundary is compared with a surface; some are moved, see `Outline.local`."""
@@ -23,6 +24,8 @@ NODES = [0, len(SAMPLES) // 2, -1]
 """Which of them are nodes."""
 STEPS_BACK = 4
 """Steps from a fraction of an edge to the local coordinate: each has more digits, for middle nodes are nearly there."""
+KEPT = 8
+"""Sets of faces at samples that are kept."""
 ROUGH = 1e-7
 """Difference of the unit normals of two edges below which they meet smoothly."""
 
@@ -36,7 +39,7 @@ class Places(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Outline:
-    """The curves of the edges under the elements of a mesh; the places of samples are computed once."""
+    """The curves of the edges under the elements of a mesh; places of samples and their faces are computed once."""
 
     problem: Problem
     mesh: Mesh
@@ -136,6 +139,34 @@ class Outline:
     def sampled(self, elements: IntArray) -> Places:
         """Places at the samples of elements (k,)."""
         return Places(*(part[elements] for part in self._samples))
+
+    def faces(self, surface: AnyShape, elements: IntArray) -> Faces:
+        """Faces (k, 17) of a surface that hold the samples of elements (k,).
+
+        At nodes they are those of contact points. Between them each place has the face to which it is turned.
+        """
+        for of, at, known in self._known_faces:
+            if of is surface and np.array_equal(at, elements):
+                return known
+        found = self._faces(surface, elements)
+        self._known_faces.appendleft((surface, elements, found))
+        return found
+
+    @cached_property
+    def _known_faces(self) -> deque[tuple[AnyShape, IntArray, Faces]]:
+        """Those that were asked for last: many states on one mesh ask for the same."""
+        return deque(maxlen=KEPT)
+
+    def _faces(self, surface: AnyShape, elements: IntArray) -> Faces:
+        at, (nodes, (beside, reach)) = self.sampled(elements), (self.mesh.nodes, self.sides)
+        flat, inward = at.points.reshape(-1, 2), np.repeat(at.inward.reshape(-1, 1, 2), 2, axis=1)
+        # nodes say where the body lies on a face
+        every = np.concatenate([nodes, flat]), np.concatenate([beside, inward]), np.append(reach, np.zeros(len(flat)))
+        held = surface.faces(*every)
+        own = Faces(*(part[len(nodes) :, 0].reshape(at.points.shape[:-1] + part.shape[2:]) for part in held))
+        for part, at_nodes in zip(own, held, strict=True):
+            part[:, NODES] = at_nodes[self.mesh.elements[elements], [2, 0, 0]]
+        return own
 
     @cached_property
     def sides(self) -> tuple[Array, Array]:

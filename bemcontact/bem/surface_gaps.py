@@ -142,19 +142,10 @@ class SurfaceGaps(DisplacedSurfaces):
         return paired
 
     def linear(self, zone: str, elements: IntArray) -> Faces:
-        """Gap (k, q) [L] of elements (k,) as contact sees it, ε + n·(u - w), with the normals n of the undeformed body.
-
-        At nodes, ε and n are those of contact points. Between them each place has the face to which it is turned.
-        """
-        at, held = self.outline.sampled(elements), self.held[zone]
-        flat, inward = at.points.reshape(-1, 2), np.repeat(at.inward.reshape(-1, 1, 2), 2, axis=1)
-        nodes, (beside, reach) = self.outline.mesh.nodes, self.outline.sides  # which say where the body lies on a face
-        every = np.concatenate([nodes, flat]), np.concatenate([beside, inward]), np.append(reach, np.zeros(len(flat)))
-        faces = (part[len(nodes) :, 0] for part in self.surfaces[zone].faces(*every))
-        gap, normals, lies = (part.reshape(at.points.shape[:-1] + part.shape[1:]) for part in faces)
-        gap[:, NODES], normals[:, NODES], lies[:, NODES] = (part[elements] for part in held)
+        """Gap (k, q) [L] of elements (k,) as contact sees it, ε + n·(u - w), with the normals n of contact."""
+        at, held = self.outline.sampled(elements), self.outline.faces(self.surfaces[zone], elements)
         moved = self._displacement[elements] - self.tool_motion(zone, at.points, at.inward)
-        return Faces(gap + np.sum(normals * moved, axis=-1), normals, lies)
+        return held._replace(gap=held.gap + np.sum(held.normals * moved, axis=-1))
 
     def _against(self, zone: str, elements: IntArray) -> Array:
         """Displacement (k, q, 2) [L] of elements (k,) beside that of the surface, where they come to touch it."""
