@@ -11,7 +11,7 @@ from bemcontact.adaptivity.fields import MeshDifference, Solved, solved, solved_
 from bemcontact.adaptivity.hidden_changes import told_apart
 from bemcontact.adaptivity.mesh_search import MeshSearch
 from bemcontact.adaptivity.mesh_sizes import MOST_UNKNOWNS, cut
-from bemcontact.adaptivity.moved_pairs import may_move, with_resting_pairs
+from bemcontact.adaptivity.resting_contacts import MOST_STEPS, after_motion, matters, may_move, with_resting_contacts
 from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.bem.condense import Condensation, Condenser, condensed
@@ -79,7 +79,7 @@ def meshed(
     found = _found(cut(problem, 1), progress)
     if problem.mesh.refine == 1:
         return found
-    refined = found.problem.refined(problem.mesh.refine).on_pairs_of(found.problem)
+    refined = found.problem.refined(problem.mesh.refine).on_contacts_of(found.problem)
     finer = stated(refined, progress, errors=errors, singular=found.singular)
     known = tuple(mine.knowing(its) for mine, its in zip(finer.accuracies, found.accuracies, strict=True))
     return replace(finer, accuracies=known, singular=found.singular)
@@ -105,7 +105,7 @@ def stated(
     if not judged and not may_move(problem):
         return _unsolved(problem, condensation, asked, reason)
     try:
-        own = with_resting_pairs(solved_state(condensation), condenser)
+        own = with_resting_contacts(solved_state(condensation), condenser)
     except SolverError as error:
         return _unsolved(problem, condensation, asked, str(error) if judged else reason)
     problem = own.body.problem
@@ -161,6 +161,7 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
     assert asked is not None
     search = MeshSearch.of(problem)
     best: Meshed | None = None
+    steps, moved = MOST_STEPS, False
     errors: list[float] = []
     reason = f"no better mesh was found in {passes} passes"
     for number in range(1, passes + 1):
@@ -171,9 +172,11 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
                 progress(f"{start}, {unknowns} unknowns")
 
             coarse = search.fitted(MOST_UNKNOWNS, tell)
-            if number == 1 and (moved := with_resting_pairs(coarse, condensed)) is not coarse:
-                search = MeshSearch.of(problem.on_pairs_of(moved.body.problem))
+            if number == 1 and (there := with_resting_contacts(coarse, condensed)) is not coarse:
+                search = MeshSearch.of(problem.on_contacts_of(there.body.problem))
                 coarse = search.fitted(MOST_UNKNOWNS, tell)
+            if number == 1 and after_motion(coarse)[1]:
+                steps = 0  # contacts never come to rest
             if 2 * coarse.counted_unknowns > MOST_UNKNOWNS:
                 reason = f"a finer mesh would have more than {MOST_UNKNOWNS} unknowns"
                 break
@@ -200,9 +203,13 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
             singular=tuple(map(tuple, singular)),
         )
         progress(f"pass {number}, {fine.degrees_of_freedom} unknowns, error at most {100 * now.worst:.2g} %")
-        best = now if best is None or now.worst <= best.worst else best
-        if all(item.met for item in best.accuracies):
+        best = now if best is None or moved or now.worst <= best.worst else best
+        resting, change = after_motion(fine) if steps else (problem, 0.0)
+        if all(item.met for item in best.accuracies) and not matters(problem, change):
             return best
+        if moved := change > 0:
+            search.move(resting)
+            steps -= 1
         if lost := _lost_digits(fine):
             reason = lost
             break

@@ -59,6 +59,11 @@ class MeshSearch(MeshSizes):
         self.last = solved(mesh, self.last)
         return self.last
 
+    def move(self, problem: Problem) -> None:
+        """Go on with contacts as they are in another problem; corners of surfaces are opposite to other places."""
+        moved = type(self).of(self.problem.on_contacts_of(problem))
+        self.problem, self.marks, self.facing = moved.problem, moved.marks, moved.facing
+
     def halve(self) -> None:
         """Halve all elements."""
         self.sources = [[limit._replace(size=limit.size / 2) for limit in own] for own in self.sources]

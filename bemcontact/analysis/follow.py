@@ -11,7 +11,7 @@ import numpy as np
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.mesh_sizes import cut
-from bemcontact.adaptivity.moved_pairs import may_move
+from bemcontact.adaptivity.resting_contacts import may_move
 from bemcontact.analysis.path_states import FollowedPath, errors_at_breakpoints
 from bemcontact.analysis.penetration import penetration_on_path
 from bemcontact.analysis.result import Result
@@ -174,7 +174,7 @@ def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Prob
     if not problem.adapts:
         if may_move(problem):
             with suppress(ProblemError):
-                problem = problem.on_pairs_of(meshed(Variation(problem, key).at(end), errors=False).problem)
+                problem = problem.on_contacts_of(meshed(Variation(problem, key).at(end), errors=False).problem)
         return problem, {}
     problem = problem.model_copy(update={"variants": {}})  # they may not fit the mesh that is found
     found: dict[float, Meshed] = {}
@@ -186,7 +186,7 @@ def _on_mesh(problem: Problem, key: str, start: float, end: float) -> tuple[Prob
         except ProblemError as error:
             refused.append(error)
         else:
-            on_mesh = problem.on_mesh_of(found[value].problem).on_pairs_of(found[value].problem)
+            on_mesh = problem.on_mesh_of(found[value].problem).on_contacts_of(found[value].problem)
     if not found:
         raise refused[0]
     return on_mesh, found
@@ -262,7 +262,7 @@ def _change(contact: CondensedContact, found: Meshed | None, key: str, pressure:
     problem = found.problem
     value = stated_value(problem, key)
     if path[-1] == MODULUS:
-        doubled = condensed(problem.with_value(key, 2 * value).on_pairs_of(problem))
+        doubled = condensed(problem.with_value(key, 2 * value).on_contacts_of(problem))
         rate = modulus_rate(found.condensation, doubled, value, pressure)
         return Change(rate, np.zeros(contact.free_motions))
     other = 2 * value or 1.0

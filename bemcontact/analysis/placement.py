@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bemcontact.adaptivity.moved_pairs import motions_of_pairs
+from bemcontact.adaptivity.resting_contacts import motions_of_pairs
 from bemcontact.analysis.displaced_contact import Displaced, displaced, load_after, turn_of_body
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.footprint import footprint

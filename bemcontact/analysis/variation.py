@@ -37,7 +37,7 @@ class Variation:
         if value not in self.stated:
             case, problem = case_of(self.problem, self.key), self.problem
             if case is None:
-                self.stated[value] = problem.with_value(self.key, value).on_pairs_of(problem)
+                self.stated[value] = problem.with_value(self.key, value).on_contacts_of(problem)
             else:
                 self.stated[value] = problem.with_factors({**problem.factors(), case: value})
         return self.stated[value]

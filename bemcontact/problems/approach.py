@@ -60,13 +60,7 @@ def approached(zones: Mapping[str, BodyZone]) -> dict[str, BodyZone]:
         first, second = (tuple(dict.fromkeys(edge for pair in pairs for edge in pair[i])) for i in (0, 1))
         x, y = approach(first, replace(touching[next(iter(signs))], edges=second, nearest={}))
         ways |= {name: (sign * x, sign * y) for name, sign in signs.items()}
-    return after(zones, ways)
-
-
-def after(zones: Mapping[str, BodyZone], ways: Mapping[str, Point]) -> dict[str, BodyZone]:
-    """Zones whose pairs are those after displacements [L] of the other bodies, by name of the zone."""
-    found = {name: replace(zones[name].surface, approach=way) for name, way in ways.items()}
-    return {name: replace(zone, surface=found.get(name, zone.surface)) for name, zone in zones.items()}
+    return {name: zone.after(ways[name]) if name in ways else zone for name, zone in zones.items()}
 
 
 def moved_together(surfaces: Mapping[str, BodySurface]) -> Iterator[dict[str, float]]:

@@ -101,8 +101,9 @@ class BodySurface:
     share : part that the first side has in common normals: its modulus E / (1 - ν²) over the sum of both
     first : edges of the first side where it has such a part
     first_loops : all loops of that body
-    approach : displacement [L] of this body that makes it touch them as drawn; pairs are those after it
-    nearest : fractions of curves where they are nearest to it, as far as they were looked for
+    approach : displacement [L] of this body that makes it touch them; pairs, or the faces of a rigid body, are those
+        after it
+    nearest : fractions of curves where they are nearest to it after a way, as far as they were looked for
     """
 
     kind: ClassVar[str] = "body"
@@ -115,7 +116,7 @@ class BodySurface:
     first: tuple[Edge, ...] = ()
     first_loops: tuple[tuple[Edge, ...], ...] = ()
     approach: Point = (0.0, 0.0)
-    nearest: dict[Curve, tuple[float, ...]] = field(default_factory=dict)
+    nearest: dict[tuple[Curve, Point], tuple[float, ...]] = field(default_factory=dict)
 
     @cached_property
     def _ends(self) -> tuple[Array, BoolArray]:
@@ -130,6 +131,15 @@ class BodySurface:
                 sharp = (abs(cross(own, others)) > CORNER) | (np.sum(own * others, axis=1) < 0)
                 corners.append(sharp | np.array([other.name not in names for other in (before, after)]))
         return np.array(sums), np.array(corners)
+
+    @property
+    def way(self) -> Array:
+        """The `approach` (2,) of a rigid body [L]; zero for an elastic one, of which pairs alone are after it."""
+        return np.array((0.0, 0.0) if self.elastic else self.approach)
+
+    def after(self, approach: Point) -> "BodySurface":
+        """The surface after another displacement [L] of its body."""
+        return replace(self, approach=approach)
 
     @cached_property
     def other_side(self) -> "BodySurface":
@@ -245,13 +255,14 @@ class BodySurface:
         return Closest(feet.gap + self.offset, feet.normals)
 
     def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
-        """Find the faces that hold points (k, 2) [L], as of `Polyline`.
+        """Find the faces that hold points (k, 2) [L], as of `LineSurface`.
 
         A point on a corner of this body has the edge to which each side of it, with normals (k, 2, 2) into its own
         body, is turned. So has a corner of the other body that stands in a concave one, up to the distance `reach`
         (k,) [L]. A convex corner presses on a smooth boundary along its normal, as far as that is between the normals
         of the edges.
         """
+        points = points - self.way
         pairs = self.pairs(points, inward[:, 0])
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in (pairs.gap + self.offset, pairs.normals))
         turns = abs(cross(inward[:, 0], inward[:, 1])) > CORNER
@@ -271,7 +282,7 @@ class BodySurface:
                     chosen = np.where(turns[at, None], chosen, between_normals(inward[at, side], own[:1], own[1:]))
                 held.normals[at, column] = held.faces[at, column] = chosen
                 held.gap[at, column] = np.sum((points[at] - joint) * chosen, axis=1) + self.offset
-        return held
+        return held.before(self.way)
 
     def _press_on_ridges(self, points: Array, inward: Array, feet: Feet, held: Faces) -> None:
         """Put the normals of the other body beside convex corners of this rigid one, as `Polyline` does.
@@ -372,3 +383,7 @@ class BodyZone:
 
     edges: tuple[str, ...]
     surface: BodySurface
+
+    def after(self, approach: Point) -> "BodyZone":
+        """The zone after another displacement [L] of the body that is touched."""
+        return replace(self, surface=self.surface.after(approach))

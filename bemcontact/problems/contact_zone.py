@@ -45,6 +45,11 @@ class ContactZone(SpecModel):
     surface: SurfaceSpec
     """The rigid surface."""
 
+    def after(self, approach: Point) -> Self:
+        """Copy after another displacement [L] of its surface, no deflected contour, beside the body."""
+        assert not isinstance(self.surface, DeflectedContour)
+        return self.model_copy(update={"surface": self.surface.after(approach)})
+
     @model_validator(mode="after")
     def _contour_of_edges(self) -> Self:
         """Refuse the contour of no edges."""

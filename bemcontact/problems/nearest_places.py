@@ -24,15 +24,16 @@ AT_END = 1e-6
 
 
 def nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
-    """Fractions of the length inside an edge where the initial gap is locally least, to `ACCURACY`.
+    """Fractions of the length inside an edge where the gap of a surface after its way is locally least, to `ACCURACY`.
 
     A smooth surface remembers them: each mesh of a search asks again.
     """
     if isinstance(surface, Polyline):
         return _nearest_places(curve, surface)
-    if curve not in surface.nearest:
-        surface.nearest[curve] = _nearest_places(curve, surface)
-    return surface.nearest[curve]
+    key = curve, surface.approach
+    if key not in surface.nearest:
+        surface.nearest[key] = _nearest_places(curve, surface)
+    return surface.nearest[key]
 
 
 def _nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
@@ -50,12 +51,17 @@ def _nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
 
 def opposite_places(curve: Curve, surface: AnyShape) -> Array:
     """Fractions of the length of an edge that are nearest to places of a body: a narrow one is between samples."""
-    return curve.nearest(places_along(surface.edges).points) if isinstance(surface, BodySurface) else np.zeros(0)
+    return (
+        curve.nearest(places_along(surface.edges).points + surface.way)
+        if isinstance(surface, BodySurface)
+        else np.zeros(0)
+    )
 
 
 def gaps(curve: Curve, surface: AnyShape, fractions: Array) -> Array:
-    """Initial gap [L] at fractions of the length of an edge, of any shape; beyond its ends that of the ends."""
-    return surface.closest(curve.at(np.clip(fractions, 0, 1).ravel())).gap.reshape(fractions.shape)
+    """Gap [L] after its way at fractions of the length of an edge, of any shape; beyond its ends that of the ends."""
+    places = curve.at(np.clip(fractions, 0, 1).ravel()) - surface.way
+    return surface.closest(places).gap.reshape(fractions.shape)
 
 
 class SurfaceCorner(NamedTuple):
@@ -80,16 +86,17 @@ def surface_corners(edge: Edge, surface: AnySurface, *, at_ends: bool = False) -
         yield from _corners_of_body(edge, surface)
     if not isinstance(surface, Polyline):
         return
-    for corner, turn in zip(surface.points[1:-1], surface.turns.tolist(), strict=True):
-        fraction = edge.curve.fraction_at(corner)
-        if AT_END < fraction < 1 - AT_END or (at_ends and _is_opposite(edge, round(fraction), corner)):
+    corners = np.array(surface.points)[1:-1] + surface.way
+    for (x, y), turn in zip(corners.tolist(), surface.turns.tolist(), strict=True):
+        fraction = edge.curve.fraction_at((x, y))
+        if AT_END < fraction < 1 - AT_END or (at_ends and _is_opposite(edge, round(fraction), (x, y))):
             yield SurfaceCorner(fraction, turn)
 
 
 def _corners_of_body(edge: Edge, surface: BodySurface) -> Iterator[SurfaceCorner]:
     """Where an edge is nearest to a corner of a body, to both sides of which it is turned there."""
     for corner, normals, _ in surface.joints:
-        fraction = edge.curve.nearest(corner[None])
+        fraction = edge.curve.nearest(corner[None] + surface.way)
         if AT_END < fraction[0] < 1 - AT_END and turned_to(-edge.normals(fraction), normals).all():
             (x, y), (u, v) = normals
             yield SurfaceCorner(float(fraction[0]), float(np.arctan2(x * v - y * u, x * u + y * v)))

@@ -9,7 +9,7 @@ from pydantic import Field, PrivateAttr
 
 from bemcontact.checks.arguments import text_of_argument
 from bemcontact.errors import Issue, KeyPath, ProblemError
-from bemcontact.problems.approach import after, approached
+from bemcontact.problems.approach import approached
 from bemcontact.problems.bodies import (
     SEPARATOR,
     BodyContact,
@@ -31,6 +31,7 @@ from bemcontact.problems.curves import CircularArc, Edge
 from bemcontact.problems.load_case import LoadCase
 from bemcontact.problems.material import Material
 from bemcontact.problems.pairing import OppositePart, opposite_parts
+from bemcontact.problems.rigid_surface import DeflectedContour
 from bemcontact.problems.units import Units
 from bemcontact.problems.validation import Name, Point, SpecModel, Text, Title, left_out
 from bemcontact.problems.visibility import edges_that_see, zone_edges
@@ -196,13 +197,11 @@ class StatedBodies(SpecModel, Drawn):
     @property
     def zones(self) -> Mapping[str, ContactZone | BodyZone]:
         """The contact zones, then the contacts between bodies as zones on the surface of the second body."""
-        if not self.contacts:
-            return self.contact_zones
-        if not self._zones:
+        if self.contacts and not self._zones:
             self._zones.update(self.contact_zones)
             of_contacts = {name: self._zone_of(item.between, item.gap) for name, item in self.contacts.items()}
             self._zones.update(approached(of_contacts))
-        return self._zones
+        return self._zones or self.contact_zones
 
     @property
     def bonds(self) -> Mapping[str, BodyZone]:
@@ -293,29 +292,30 @@ class StatedBodies(SpecModel, Drawn):
         x, y = np.mean([arc.center for arc in arcs], axis=0).tolist()
         return (x, y) if np.ptp([arc.center for arc in arcs], axis=0).max() <= SAME_CIRCLE * radius else None
 
-    def on_pairs_of(self, other: Self) -> Self:
+    def on_contacts_of(self, other: Self) -> Self:
         """Copy whose bodies form the pairs that they form in another problem with the same boundaries and contacts.
 
-        Common normals depend on the moduli of both bodies. What is differentiated or followed keeps its pairs.
+        Common normals depend on the moduli of both bodies. What is differentiated or followed keeps its pairs, and
+        rigid surfaces stay where they came to be touched.
         """
         problem = self.model_copy()
-        if self.contacts:
-            surfaces = {name: other.zones[name].surface for name in self.contacts}
-            kept = {
-                name: replace(other.zones[name], surface=replace(surface, offset=self.contacts[name].gap))
-                for name, surface in surfaces.items()
-                if isinstance(surface, BodySurface)
-            }
-            problem._zones = {**self.contact_zones, **kept}
-            problem._opposite = other._opposite
-        problem._bonds = dict(other.bonds)
+        zones: dict[str, ContactZone | BodyZone] = {}
+        for name, zone in self.contact_zones.items():
+            surface = other.zones[name].surface
+            zones[name] = zone if isinstance(surface, DeflectedContour) else zone.after(surface.approach)
+        for name, contact in self.contacts.items():
+            zone = other.zones[name]
+            assert isinstance(zone, BodyZone)
+            zones[name] = replace(zone, surface=replace(zone.surface, offset=contact.gap))
+        problem._zones, problem._opposite, problem._bonds = zones, other._opposite, dict(other.bonds)
         return problem
 
     def after_motions(self, motions: Mapping[str, Point]) -> Self:
-        """Copy with pairs after displacements [L] of the second body beside the first one, by name of the contact."""
+        """Copy after displacements [L] of the second body, or of a rigid surface, beside the first one, by zone."""
         problem = self.model_copy()
-        zones = {name: zone for name, zone in self.zones.items() if isinstance(zone, BodyZone)}
-        problem._zones = {**self.zones, **after(zones, motions)}
+        problem._zones = {
+            name: zone.after(motions[name]) if name in motions else zone for name, zone in self.zones.items()
+        }
         problem._opposite = {name: parts for name, parts in self._opposite.items() if name not in motions}
         return problem
 

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 import scipy
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problems.curves import Curve, cross
@@ -62,6 +62,10 @@ class Faces(NamedTuple):
         for own, new in zip(self, (gap, normals, faces), strict=True):
             own[here, column] = new[here]
 
+    def before(self, way: Array) -> "Faces":
+        """Those of a surface after a way (2,) [L], with gaps before it: less the way they are those after it."""
+        return Faces(self.gap + self.normals @ way, self.normals, self.faces)
+
 
 LOADED: Mapping[str, str] = dict.fromkeys(
     ("force", "load", "moment", "displacement"),
@@ -71,30 +75,65 @@ LOADED: Mapping[str, str] = dict.fromkeys(
 """Words that are no keys of a rigid surface or of its zone -> what to write instead."""
 
 
-class SmoothSurface(SpecModel):
-    """A surface without corners: one face holds both sides of a point."""
+class LineSurface(SpecModel):
+    """A rigid surface along a line."""
 
     other_words: ClassVar[Mapping[str, str]] = LOADED
 
+    _approach: Point = PrivateAttr((0.0, 0.0))
+
+    @property
+    def approach(self) -> Point:
+        """Displacement [L] beside the body after which faces, and with them gaps and normals of contact, are found."""
+        return self._approach
+
+    @property
+    def way(self) -> Array:
+        """The `approach` (2,) [L]."""
+        return np.array(self._approach)
+
+    def after(self, approach: Point) -> Self:
+        """Copy after another displacement [L] beside the body."""
+        moved = self.model_copy()
+        moved._approach = approach
+        return moved
+
+    def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
+        """Find the faces that hold points (k, 2) [L] of a boundary with normals (k, 2, 2) into the body on either side.
+
+        In a concave corner of the surface each side of a point has the face to which it is turned, although the other
+        face may be nearer. A convex corner presses on the body along the normals of the body, as far as they lie
+        between those of its faces: a smooth boundary cannot lie on a face that is tilted against it, and touches it
+        beside the corner only. It presses on both sides of a re-entrant corner of the body up to the distance `reach`
+        (k,) [L].
+        """
+        return self.faces_as_drawn(np.asarray(points, float) - self.way, inward, reach).before(self.way)
+
+    def faces_as_drawn(self, points: Array, inward: Array, reach: Array) -> Faces:
+        """Those of the surface where it is drawn."""
+        raise NotImplementedError
+
+
+class SmoothSurface(LineSurface):
+    """A surface without corners: one face holds both sides of a point."""
+
     @cached_property
-    def nearest(self) -> dict[Curve, tuple[float, ...]]:
-        """Fractions of curves where they are nearest to it, as far as `nearest_places` has looked for them."""
+    def nearest(self) -> dict[tuple[Curve, Point], tuple[float, ...]]:
+        """Fractions of curves where they are nearest to it after a way, as far as `nearest_places` looked for them."""
         return {}
 
     def closest(self, points: Array) -> Closest:
         """Gap and normal at points (k, 2) [L]."""
         raise NotImplementedError
 
-    def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
-        """Find the face that holds points (k, 2) [L], as of `Polyline`."""
+    def faces_as_drawn(self, points: Array, inward: Array, reach: Array) -> Faces:
+        """The nearest face holds both sides of points (k, 2) [L]."""
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in self.closest(points))
         return Faces(gap, normals, normals)
 
 
-class Polyline(SpecModel):
+class Polyline(LineSurface):
     """A polygonal line with the body on its left; its first and last segments are infinite."""
-
-    other_words: ClassVar[Mapping[str, str]] = LOADED
 
     kind: Literal["polyline"] = "polyline"
     """The shape of the surface: plane, circle, polyline, spline, or deflected_contour."""
@@ -138,16 +177,9 @@ class Polyline(SpecModel):
             normals[on] = unit_vectors(lefts[which] + lefts[which + 1], lefts[which])[on]
         return Closest(np.einsum("ki,ki->k", offset, normals), normals)
 
-    def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
-        """Find the faces that hold points (k, 2) [L] of a boundary with normals (k, 2, 2) into the body on either side.
-
-        In a concave corner of the surface each side of a point has the face to which it is turned, although the other
-        face may be nearer. A convex corner presses on the body along the normals of the body, as far as they lie
-        between those of its faces: a smooth boundary cannot lie on a face that is tilted against it, and touches it
-        beside the corner only. It presses on both sides of a re-entrant corner of the body up to the distance `reach`
-        (k,) [L].
-        """
-        points, near = np.asarray(points, float), self.closest(points)
+    def faces_as_drawn(self, points: Array, inward: Array, reach: Array) -> Faces:
+        """Those of a line with corners at points (k, 2) [L]."""
+        near = self.closest(points)
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in near)
         if len(self.points) == 2:
             return Faces(gap, normals, normals)

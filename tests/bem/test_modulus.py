@@ -48,7 +48,7 @@ def assert_as_differences(problem: Problem, *keys: str) -> None:
     for key in keys:
         value = stated_value(problem, key)
         step = 1e-6 * value
-        ends = [problem.with_value(key, value + side).on_pairs_of(problem) for side in (step, -step)]
+        ends = [problem.with_value(key, value + side).on_contacts_of(problem) for side in (step, -step)]
         after, before = (bemcontact.solve(end).solution.pressure for end in ends)
         expected = (after - before) / (2 * step)
         assert np.abs(found[key].rising.pressure - expected).max() < 1e-5 * np.abs(expected).max()
@@ -161,7 +161,7 @@ def test_bodies_moduli_springs_and_displacements_scale_together():
     problem = pressed().with_value("bodies.wall.conditions.bottom", {"spring": {"normal": 300.0}})
     problem = problem.with_value("bodies.wall.conditions.right", {"displacement": {"x": 0.0}})
     rates = bemcontact.sensitivities(problem, [DISK, WALL])
-    ends = [problem.with_value(spring, 300.0 * (1 + s)).on_pairs_of(problem) for s in (1e-6, -1e-6)]
+    ends = [problem.with_value(spring, 300.0 * (1 + s)).on_contacts_of(problem) for s in (1e-6, -1e-6)]
     after, before = (bemcontact.solve(end).solution.pressure for end in ends)
     whole = relative_sum(problem, rates, DISK, WALL) + (after - before) / 2e-6
     pressure = rates.solution.pressure
@@ -209,9 +209,9 @@ def test_pairs_are_kept():
     stiff = problem.with_value(DISK, 8000.0)
     normals = body_of(problem).points.normals
     assert not np.array_equal(body_of(stiff).points.normals, normals)
-    kept = body_of(stiff.on_pairs_of(problem)).points
+    kept = body_of(stiff.on_contacts_of(problem)).points
     np.testing.assert_array_equal(kept.normals, normals)
-    other = stiff.with_value("contacts.c.gap", 0.03).on_pairs_of(problem)
+    other = stiff.with_value("contacts.c.gap", 0.03).on_contacts_of(problem)
     np.testing.assert_allclose(body_of(other).points.gap - kept.gap, 0.02, rtol=1e-12)
 
 

@@ -6,7 +6,7 @@ from known_answers import pin_in_hole
 from several_bodies import HELD, block, circle, elastic, problem
 
 import bemcontact
-from bemcontact.adaptivity.moved_pairs import RESTING
+from bemcontact.adaptivity.resting_contacts import RESTING
 from bemcontact.problems import Material
 from bemcontact.reference.pin_in_hole import LoosePin
 
@@ -93,3 +93,67 @@ def test_load_cases_that_share_their_pairs_say_what_that_changes(clearance: floa
         assert result.holds is holds
         told = [*result.notes, result.penetration.words if result.penetration else ""]
         assert any("points opposite to each other were found" in words for words in told)
+
+
+def rounded_punch(slide=0.0, *, drawn=0.0):
+    """A rigid punch with a flat face of 2 and edges rounded by 0.5 on a block, that its bottom slides along it."""
+    block = {"bottom": (-5, -5), "right": (5, -5), "top": (5, 0), "left": (-5, 0)}
+    punch = [
+        {"name": "face", "start": (-1 + drawn, 0), "end": (1 + drawn, 0)},
+        {"name": "right edge", "kind": "arc", "center": (1 + drawn, 0.5), "end": (1.5 + drawn, 0.5)},
+        {"name": "right side", "end": (1.5 + drawn, 2)},
+        {"name": "back", "end": (-1.5 + drawn, 2)},
+        {"name": "left side", "end": (-1.5 + drawn, 0.5)},
+        {"name": "left edge", "kind": "arc", "center": (-1 + drawn, 0.5), "end": (-1 + drawn, 0)},
+    ]
+    return bemcontact.problem({
+        "name": "rounded punch",
+        "bodies": {
+            "block": {
+                "material": {"young_modulus": 1000, "poisson_ratio": 0.3},
+                "boundary": {"outer": [{"name": name, "start": at} for name, at in block.items()]},
+                "conditions": {"bottom": {"displacement": {"x": slide, "y": 0}}},
+            },
+            "punch": {"rigid": True, "boundary": {"outer": punch}},
+        },
+        "contacts": {"press": {"between": ["block/top", "punch"]}},
+        "tools": {"ram": {"zones": "press", "force": {"y": -10}}},
+        "accuracy": 0.02,
+    })  # fmt: skip
+
+
+@pytest.mark.parametrize("slide", [-0.01, 0.2])
+def test_a_block_that_slides_under_a_punch_is_that_under_a_punch_drawn_there(slide):
+    """Where the face goes over into its edges the curvature jumps: gaps as drawn would have a false corner there."""
+    slid, there = bemcontact.solve(rounded_punch(slide)), bemcontact.solve(rounded_punch(drawn=-slide))
+    for result in (slid, there):
+        assert result.certified
+        assert result.accuracy.met
+    bars = [bar.bar for result in (slid, there) for bar in result.accuracy.bars if bar.quantity == "peak"]
+    assert slid.peak.pressure == pytest.approx(there.peak.pressure, rel=sum(bars))
+    assert slid.intervals[0].length == pytest.approx(there.intervals[0].length, rel=0.005)
+    assert slid.intervals[0].start[0] == pytest.approx(there.intervals[0].start[0], abs=0.005)
+
+
+@pytest.mark.parametrize("place", [(0.0, 5.0), (3.0, 6.0), (-2.0, 9.0)])
+def test_a_roller_may_be_drawn_anywhere_above_a_block(place):
+    """A tool takes it to one place and presses it on: where it was drawn does not matter."""
+    x, _ = place
+    block = {"bottom": (-12, -8), "right": (12, -8), "top": (12, 0), "left": (-12, 0)}
+    result = bemcontact.solve(
+        bemcontact.problem({
+            "name": "roller",
+            "material": {"young_modulus": 1000, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{"name": name, "start": at} for name, at in block.items()]},
+            "conditions": {"bottom": {"fixed": True}},
+            "contact_zones": {"top": {"edges": "top", "surface": {
+                "kind": "circle", "center": place, "radius": 5, "body": "outside"}}},
+            "tools": {"roller": {"zones": "top", "force": {"y": -10}, "displacement": {"x": 1.0 - x}}},
+        })
+    )  # fmt: skip
+    assert result.certified
+    assert result.forces["top"] == pytest.approx((0, -10), abs=0.025)
+    start, end = result.intervals[0].start, result.intervals[0].end
+    assert (start[0] + end[0]) / 2 == pytest.approx(1.0, abs=0.005)
+    hertz = np.sqrt(10 * 1000 / 0.91 / np.pi / 5)
+    assert result.peak.pressure == pytest.approx(hertz, rel=0.02)  # the block is finite: b/h is 0.04

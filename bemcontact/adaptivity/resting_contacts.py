@@ -1,45 +1,54 @@
-"""Pairs of two elastic bodies after their motion, as of a pin that is drawn elsewhere in its hole than it comes to lie.
+"""Contacts after the motion of their sides, as of a pin that is drawn elsewhere in its hole than it comes to lie.
 
-Pairs are first those of bodies that touch as drawn. Where the solution moves them beside this, other places are
-opposite to each other, and along a curved boundary the gaps of pairs are off by the motion over its radius. So pairs
-are formed once more after the motion, until they rest.
+Pairs of two elastic bodies are first those of bodies that touch as drawn, and the faces of rigid surfaces are where
+they are drawn. Where the solution moves both sides beside this, other places are opposite to each other: gaps and
+normals along a curved boundary are off by the motion over its radius, and by more where its curvature jumps. So pairs
+and faces are found once more after the motion, until they rest.
 """
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.adaptivity.fields import Solved, solved_state
+from bemcontact.adaptivity.fields import CaseAnswer, Solved, solved_state
 from bemcontact.arrays import Array
 from bemcontact.bem.body import Body
 from bemcontact.bem.condense import Condenser
+from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.bem.symmetry import symmetry_lines
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
 from bemcontact.problems.approach import moved_together
 from bemcontact.problems.body_surface import BodySurface
+from bemcontact.problems.curves import Segment
 from bemcontact.problems.edge_places import curvatures, nearest_on, places_at
+from bemcontact.problems.nearest_places import surface_corners
 from bemcontact.problems.problem import Problem
+from bemcontact.problems.rigid_surface import DeflectedContour, Plane
+from bemcontact.problems.surface_lines import LineSurface, Polyline
 from bemcontact.problems.validation import Point
 
 RESTING = 0.05
 """Part of the accuracy by which the peak pressure may change with the pairs."""
+MATTERS = 0.25
+"""The same part from which another mesh is made, although the accuracy is met: it would be noted."""
 LEAST_ASKED = 0.01
 """Accuracy that is meant, unless a smaller one is asked for."""
 AS_A_WHOLE = 2.0
 """Motion over its differences within contact from which bodies move as a whole: it is 1 in the contact of Hertz."""
 ROUND_OFF = 1e-9
-"""Distance of two lines of symmetry over the size of the bodies, up to which they are one."""
+"""Distance of two lines of symmetry over the size of the bodies, up to which they are one; motion that is none."""
 MOST_STEPS = 5
 """Steps in which the pairs have to come to rest."""
 SLOWEST = 0.5
 """Largest ratio of two changes of the pairs: a body that nothing holds moves on and on."""
 
 
-def with_resting_pairs(answer: Solved, condenser: Condenser) -> Solved:
-    """The answer with the pairs after the motion of its bodies; as it is if these rest already, or never come to rest.
+def with_resting_contacts(answer: Solved, condenser: Condenser) -> Solved:
+    """The answer with contacts after the motion of their sides; as it is if these rest already, or never come to rest.
 
-    Load cases that share a condensation share its pairs, so these stay as they are.
+    Load cases that share a condensation share its contacts, so these stay as they are.
     """
     found, last = answer, np.inf
     for _ in range(MOST_STEPS):
@@ -57,8 +66,17 @@ def with_resting_pairs(answer: Solved, condenser: Condenser) -> Solved:
 
 
 def may_move(problem: Problem) -> bool:
-    """Whether the problem has pairs of elastic bodies, and no load cases that share them."""
-    return bool(_pairs(problem)) and (problem.case is not None or not problem.load_cases)
+    """Whether the problem has contacts that change with a motion, and no load cases that share them."""
+    return bool(_pairs(problem) or _curved(problem)) and (problem.case is not None or not problem.load_cases)
+
+
+def matters(problem: Problem, change: float) -> bool:
+    """Whether a change of the peak with the pairs would be noted."""
+    return change > MATTERS * _judged_to(problem)
+
+
+def _judged_to(problem: Problem) -> float:
+    return min(LEAST_ASKED, problem.asked_accuracy or LEAST_ASKED)
 
 
 def _pairs(problem: Problem) -> dict[str, BodySurface]:
@@ -67,8 +85,23 @@ def _pairs(problem: Problem) -> dict[str, BodySurface]:
     return {name: it for name, it in surfaces.items() if isinstance(it, BodySurface) and it.first}
 
 
+def _curved(problem: Problem) -> dict[str, LineSurface | BodySurface]:
+    """Rigid surfaces that are curved, by name of the zone: along a straight one nothing changes.
+
+    Not those with a corner that presses on an edge: an element ends there, which does not follow it.
+    """
+    surfaces = {name: zone.surface for name, zone in problem.zones.items()}
+    curved = {name: it for name, it in surfaces.items() if not isinstance(it, DeflectedContour | Plane | Polyline)}
+    return {
+        name: it
+        for name, it in curved.items()
+        if not (isinstance(it, BodySurface) and (it.elastic or all(isinstance(e.curve, Segment) for e in it.edges)))
+        and not any(True for edge in map(problem.edge, problem.edges_of(name)) for _ in surface_corners(edge, it))
+    }
+
+
 def after_motion(answer: Solved) -> tuple[Problem, float]:
-    """The problem with pairs after the motion of the bodies, and the largest part by which that may change a peak.
+    """The problem with contacts after the motion of their sides, and the largest part by which that may change a peak.
 
     Followed are the components that are large beside the differences within contact: others are deformations, as all
     motion across a line of symmetry is.
@@ -77,17 +110,52 @@ def after_motion(answer: Solved) -> tuple[Problem, float]:
     if not may_move(problem):
         return problem, 0.0
     (case,), ways, change = answer.answers, dict[str, Point](), 0.0
-    moved = motions_of_pairs(answer.body, case.condensation.contact, case.solution.pressure, case.displacement)
+    least = RESTING * _judged_to(problem)
+    for name, way, of_peak in (*_ways_of_pairs(answer.body, case), *_ways_of_rigid(answer.body, case)):
+        if of_peak > least:
+            ways[name], change = way, max(change, of_peak)
+    return problem.after_motions(ways), change
+
+
+def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Point, float]]:
+    """For each contact of two elastic bodies, where the second one is beside the first, and what that may change."""
+    moved = motions_of_pairs(body, case.condensation.contact, case.solution.pressure, case.displacement)
     for name, motion in moved.items():
-        surface = _pairs(problem)[name]
+        surface = _pairs(body.problem)[name]
         step = motion.mean - surface.approach
         step[abs(step) <= AS_A_WHOLE * motion.spread] = 0.0
-        step[_axes_of_symmetry(answer.body, name)] = 0.0
-        of_peak = motion.change_of_peak(step)
-        if of_peak > RESTING * min(LEAST_ASKED, problem.asked_accuracy or LEAST_ASKED):
-            x, y = np.add(surface.approach, step).tolist()
-            ways[name], change = (x, y), max(change, of_peak)
-    return problem.after_motions(ways), change
+        step[_axes_of_symmetry(body, name)] = 0.0
+        x, y = np.add(surface.approach, step).tolist()
+        yield name, (x, y), motion.change_of_peak(step)
+
+
+def _ways_of_rigid(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Point, float]]:
+    """For each curved rigid surface, where it is beside the body, and what that may change.
+
+    A peak is off by about half of what gaps are off beside the displacement scale of contact, or normals are.
+    """
+    contact, solution, names = case.condensation.contact, case.solution, [*body.problem.zones]
+    gaps, displacement = surface_gaps(body, case.state, contact, solution), np.zeros((len(body.mesh.nodes), 2))
+    displacement[body.mesh.elements] = case.displacement
+    scale, (inward, reach) = contact.scales.displacement, body.outline.sides
+    touched = contact.initial_gap + solution.displacement <= scale
+    for name, surface in _curved(body.problem).items():
+        beside = np.flatnonzero(touched & (contact.zone == names.index(name)))
+        at, force = body.points.node[beside], (contact.weights * solution.pressure)[beside]
+        if not force.any():
+            continue
+        places = body.mesh.nodes[at]
+        motion = gaps.tool_motion(name, places) - displacement[at]
+        mean = force @ motion / force.sum()
+        spread = np.sqrt(force @ (motion - mean) ** 2 / force.sum())
+        step = mean - surface.way
+        step[abs(step) <= AS_A_WHOLE * spread] = 0.0
+        step[abs(motion).min(axis=0) <= ROUND_OFF * abs(motion).max()] = 0.0  # as at a line of symmetry
+        x, y = (surface.way + step).tolist()
+        now, there = (item.faces(places, inward[at], reach[at]) for item in (surface, surface.after((x, y))))
+        turned = there.normals - now.normals
+        off = there.gap - now.gap - np.einsum("ksx,kx->ks", turned, motion)
+        yield name, (x, y), max(float(abs(off).max()) / scale, float(np.hypot(*turned.T).max())) / 2
 
 
 def _axes_of_symmetry(body: Body, contact: str) -> list[int]:
