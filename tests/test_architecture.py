@@ -65,7 +65,6 @@ HOME = {
     ),
     "clarabel": ("bemcontact.formulations.clarabel",),
     "matplotlib": ("bemcontact.report.figures",),
-    "PIL": ("bemcontact.report.figures.animation",),
     "typer": ("bemcontact.cli",),
     "numba": ("bemcontact.bem.compiled",),
     "meshio": ("bemcontact.report.vtk",),

@@ -14,7 +14,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["
 GROUPS = {"Core": PROJECT["dependencies"], **PROJECT["optional-dependencies"]}
 EXPLANATION = (ROOT / ".docs" / "explanation" / "dependencies.md").read_text(encoding="utf-8")
 
-PACKAGE_OF = {"PIL": "pillow", "yaml": "pyyaml", "pydantic_core": "pydantic"}
+PACKAGE_OF = {"yaml": "pyyaml", "pydantic_core": "pydantic"}
 """Module -> the package that brings it, where the names differ. Each pydantic requires one pydantic_core."""
 
 

@@ -1,17 +1,16 @@
 """The body on a load path as an animation, with the pressure on its contact: of SVG for pages, or a GIF for slides."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.animation import PillowWriter
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from PIL import Image
 
 from bemcontact.analysis.result import Result
 from bemcontact.errors import ProblemError
@@ -39,8 +38,8 @@ WIDTH, CURVE, AROUND = 5.6, 1.1, 1.6
 """Inches of the width of the picture, of the height of its curve, and of texts above, between and below."""
 LOW, HIGH = 1.4, 4.0
 """Inches between which the height of the body's place is."""
-DOTS, COLORS = 130, 64
-"""Dots per inch, and number of colors, of images."""
+DOTS = 130
+"""Dots per inch of images."""
 NAMED = 3
 """Most contact zones whose forces are written."""
 
@@ -188,23 +187,20 @@ def save_animation(path: ParameterPath, file: Path, progress: Progress | None = 
         if file.suffix.lower() == ".svg":
             temporary.write_bytes(animated_graphic(animation))
             return
-        first, *others = _images(animation)
-        seconds = [*len(others) * [SHOWN], HELD]
-        first.save(
-            temporary, "GIF", save_all=True, append_images=others, duration=[1000 * each for each in seconds], loop=0
-        )
+        _write_gif(animation, temporary)
 
 
-def _images(animation: Animation) -> Iterator[Image.Image]:
-    """Draw each frame as an image with few colors."""
+def _write_gif(animation: Animation, file: Path) -> None:
+    """Write each frame as an image; the last one is held by images that are equal."""
     figure, frames = animation
     figure.set_layout_engine("none")
-    figure.set_dpi(DOTS)
-    canvas = FigureCanvasAgg(figure)
-    for shown in frames:
-        for artists in frames:
-            for artist in artists:
-                artist.set_visible(artists is shown)
-        with without_glyph_warnings():
-            canvas.draw()
-        yield Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB").quantize(COLORS)
+    writer, named = PillowWriter(fps=round(1 / SHOWN)), file.with_suffix(".gif")
+    with without_glyph_warnings():
+        writer.setup(figure, named, DOTS)
+        for shown in (*frames, *[frames[-1]] * round(HELD / SHOWN - 1)):
+            for artists in frames:
+                for artist in artists:
+                    artist.set_visible(artists is shown)
+            writer.grab_frame()
+        writer.finish()
+    named.replace(file)
