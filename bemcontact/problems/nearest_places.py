@@ -19,6 +19,8 @@ FOCUS = 6
 """Times that the samples are made finer about a least gap, each by a fifth."""
 ACCURACY = 1e-7
 """Accuracy of a place, over the length of the edge."""
+ROUND_OFF = 1e-14
+"""Difference of two gaps over the largest coordinate that is none: along a parallel surface no place is nearest."""
 AT_END = 1e-6
 """Distance over the length of an edge up to which a place is an end of it."""
 
@@ -39,13 +41,18 @@ def nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
 def _nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
     """Find the places among samples, and then among finer ones beside each."""
     at, step = np.union1d(np.linspace(0, 1, SAMPLES + 1), opposite_places(curve, surface)), 1 / SAMPLES
-    gap = gaps(curve, surface, at)
-    middle = at[1:-1][(gap[1:-1] <= gap[:-2]) & (gap[1:-1] < gap[2:])]
-    ends = np.array([step / 2, 1 - step / 2])[[gap[0] <= gap[1], gap[-1] <= gap[-2]]]
+    gap, same = gaps(curve, surface, at), ROUND_OFF * float(np.abs(curve.at(at)).max())
+    falls, rises = np.diff(gap) < -same, np.diff(gap) > same
+    middle = at[1:-1][(falls[:-1] & ~falls[1:]) | (~rises[:-1] & rises[1:])]  # both ends of what is parallel
+    inside = np.array([~falls[0] & rises[:2].any(), ~rises[-1] & falls[-2:].any()])
+    ends = np.array([step / 2, 1 - step / 2])[inside]
     middle = np.concatenate([middle, ends])
     for _ in range(FOCUS):
         fine = np.clip(middle[:, None] + step * np.linspace(-1, 1, 21), 0, 1)
-        middle, step = fine[np.arange(len(fine)), gaps(curve, surface, fine).argmin(axis=1)], step / 5
+        gap = gaps(curve, surface, fine)
+        least = gap <= gap.min(axis=1, keepdims=True) + same
+        first, last = least.argmax(axis=1), least.shape[1] - 1 - least[:, ::-1].argmax(axis=1)
+        middle, step = fine[np.arange(len(fine)), (first + last) // 2], step / 5
     return tuple(middle[np.minimum(middle, 1 - middle) > ACCURACY].tolist())
 
 
