@@ -157,3 +157,29 @@ def test_a_roller_may_be_drawn_anywhere_above_a_block(place):
     assert (start[0] + end[0]) / 2 == pytest.approx(1.0, abs=0.005)
     hertz = np.sqrt(10 * 1000 / 0.91 / np.pi / 5)
     assert result.peak.pressure == pytest.approx(hertz, rel=0.02)  # the block is finite: b/h is 0.04
+
+
+def test_a_spline_that_moves_away_from_where_it_is_drawn_has_its_ends_with_it():
+    """Drawn 13 beside the place where it presses, which is beyond its end as drawn; the same as drawn there."""
+    block = {"bottom": (-20, -10), "right": (20, -10), "top": (20, 0), "left": (-20, 0)}
+    profile = np.array([[5, 4], [4, 2], [2, 0.4], [0, 0], [-2, 0.4], [-4, 2], [-5, 4]])
+
+    def solved(x: float, y: float) -> bemcontact.Result:
+        surface = {"kind": "spline", "points": (profile + np.array([4 - x, y])).tolist()}
+        return bemcontact.solve(
+            bemcontact.problem({
+                "name": "cam",
+                "material": {"young_modulus": 1000, "poisson_ratio": 0.3},
+                "boundary": {"outer": [{"name": name, "start": at} for name, at in block.items()]},
+                "conditions": {"bottom": {"fixed": True}},
+                "contact_zones": {"top": {"edges": "top", "surface": surface}},
+                "tools": {"cam": {"zones": "top", "force": {"y": -10}, "displacement": {"x": x}}},
+            })
+        )  # fmt: skip
+
+    moved, there = solved(13.0, 2.0), solved(0.0, 0.0)
+    assert moved.certified
+    assert not any("continuation" in note for note in moved.notes)
+    bars = [bar.bar for result in (moved, there) for bar in result.accuracy.bars if bar.quantity == "peak"]
+    assert moved.peak.pressure == pytest.approx(there.peak.pressure, rel=sum(bars))
+    assert moved.intervals[0].length == pytest.approx(there.intervals[0].length, rel=0.005)
