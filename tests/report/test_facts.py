@@ -168,7 +168,8 @@ def test_the_force_of_several_zones_is_as_uncertain_as_all_of_them():
     told = [f"{name} {words}" for name, words in facts(record, UNITS)]
     errors = [bar["value"] * bar["bar"] for bar in record["accuracy"]["bars"] if bar["quantity"] == "force"]
     (whole,) = [words for words in told if "of the rigid surfaces on the body" in words]
-    assert sum(errors) <= float(whole.split("± ")[1].split(" ")[0]) <= 1.1 * sum(errors)
+    above = float(whole.split("± ")[1].split(" ")[0]) - sum(errors)
+    assert 0 <= above < 10 ** np.floor(np.log10(sum(errors)))  # it is written with one figure
     assert len([words for words in told if words.startswith("Peak pressure of middle roller")]) == 1
 
 

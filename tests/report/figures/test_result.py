@@ -261,12 +261,14 @@ def test_panels_show_a_small_contact_and_about_its_width_to_either_side(name: st
 @pytest.mark.parametrize(
     "name", ["gallery/hertz_small", "gallery/flat_punch", "cylinder_on_plane", "gallery/block_in_corner"]
 )
-def test_names_lie_in_the_frame_and_apart_from_each_other(name: str):
-    axes = drawn(name)[1][0]
-    frame = axes.get_window_extent()
+def test_names_lie_in_the_picture_and_apart_from_each_other(name: str):
+    """Right of the axes there may be room, up to the next ones."""
+    axes, *others = drawn(name)[1]
+    frame, page = axes.get_window_extent(), axes.figure.bbox
     boxes = [text.get_window_extent() for text in axes.texts]
-    assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in boxes)
+    assert all(frame.x0 <= box.x0 and box.x1 <= page.x1 for box in boxes)
     assert all(frame.y0 <= box.y0 and box.y1 <= frame.y1 for box in boxes)
+    assert not any(box.overlaps(other.get_tightbbox()) for box in boxes for other in others)
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
 
 
