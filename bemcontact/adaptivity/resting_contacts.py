@@ -37,6 +37,8 @@ LEAST_ASKED = 0.01
 """Accuracy that is meant, unless a smaller one is asked for."""
 AS_A_WHOLE = 2.0
 """Motion over its differences within contact from which bodies move as a whole: it is 1 in the contact of Hertz."""
+JUMPS = 10.0
+"""How much more a peak may change where the curvature of an outline jumps: there the gap as drawn has a corner."""
 ROUND_OFF = 1e-9
 """Distance of two lines of symmetry over the size of the bodies, up to which they are one; motion that is none."""
 MOST_STEPS = 5
@@ -148,14 +150,13 @@ def _ways_of_rigid(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Point, f
         motion = gaps.tool_motion(name, places) - displacement[at]
         mean = force @ motion / force.sum()
         spread = np.sqrt(force @ (motion - mean) ** 2 / force.sum())
-        step = mean - surface.way
-        step[abs(step) <= AS_A_WHOLE * spread] = 0.0
-        step[abs(motion).min(axis=0) <= ROUND_OFF * abs(motion).max()] = 0.0  # as at a line of symmetry
-        x, y = (surface.way + step).tolist()
+        still = abs(motion).min(axis=0) <= ROUND_OFF * abs(motion).max()  # as at a line of symmetry
+        x, y = np.where(still | (abs(mean) <= AS_A_WHOLE * spread), 0.0, mean).tolist()
         now, there = (item.faces(places, inward[at], reach[at]) for item in (surface, surface.after((x, y))))
         turned = there.normals - now.normals
         off = there.gap - now.gap - np.einsum("ksx,kx->ks", turned, motion)
-        yield name, (x, y), max(float(abs(off).max()) / scale, float(np.hypot(*turned.T).max())) / 2
+        part = max(float(abs(off).max()) / scale, float(np.hypot(*turned.T).max())) / 2
+        yield name, (x, y), part * (JUMPS if isinstance(surface, BodySurface) else 1.0)
 
 
 def _axes_of_symmetry(body: Body, contact: str) -> list[int]:
