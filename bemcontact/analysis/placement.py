@@ -1,10 +1,11 @@
 """Whether contact is where the body and the surfaces are after they have moved.
 
-Contact sees gaps along the normals of the undeformed body, ε + n·(u - w). This is exact on a plane. Elsewhere the gap
-of the displaced places differs from it by squares of displacements. These are small in linear theory, but not where a
-body moves far before it is held. The contact problem is then solved once more with the gaps of the displaced places;
-the change of the pressure is the error of the first solution, to first order. Forces have other directions and levers
-there too: the normals turn, and a body that moves takes the places of its forces along.
+Contact sees gaps along fixed normals, ε + n·(u - w). This is exact on a plane, and after the displacement of both sides
+that contact has followed. Elsewhere the gap of the displaced places differs from it by squares of what is left. These
+are small in linear theory, but not where a body moves far and contact cannot follow. The contact problem is then solved
+once more with the gaps of the displaced places; the change of the pressure is the error of the first solution, to first
+order. Forces have other directions and levers there too: the normals turn, and a body that moves takes the places of
+its forces along.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -246,8 +247,8 @@ def _off_the_surface(
     words = (
         f"Pressure acts at {_vector(contact.points[i])} on '{_edge(gaps, points, i)}', where there is no surface of "
         f"'{zone}' after the body has moved by {_vector(moved.motion[i], unit)}: it is "
-        f"{_length(moved.distance[i], unit)} off. Contact is looked for where the body is drawn. Draw the body where "
-        "it will touch, correct the motion, or hold the body by a condition if nothing else holds it in this direction."
+        f"{_length(moved.distance[i], unit)} off. Draw the body where it will touch, correct the motion, or hold the "
+        "body by a condition if nothing else holds it in this direction."
     )
     distance, allowed = float(moved.distance[i]), _allowed(gaps, contact)
     return _misfit(gaps, points, contact, i, Misfit.OFF, distance, allowed, words)
