@@ -18,7 +18,7 @@ from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.penetration import ROUND_OFF, Misfit, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.body import Body
-from bemcontact.bem.contact_points import runs
+from bemcontact.bem.mesh import runs
 from bemcontact.bem.second_side import Inside, deepest_inside
 from bemcontact.bem.surface_gaps import FaceEnd, SurfaceGaps, surface_gaps
 from bemcontact.contact.condensed_contact import CondensedContact

@@ -8,7 +8,8 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, nonnegative_residual
 from bemcontact.bem.bonds import BondedPoints
-from bemcontact.bem.contact_points import ContactPoints, contact_points
+from bemcontact.bem.candidates import contact_points
+from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.free_motions import BODY, UNSEEN, FreeMotions, PlacedTools, free_motions, placed_tools
 from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
 from bemcontact.bem.mesh import Mesh, build

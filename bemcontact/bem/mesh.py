@@ -253,6 +253,23 @@ def connected(starts: Array, middles: Array, after: IntArray, edge_of: Sequence[
     )
 
 
+def runs(mesh: Mesh, in_zone: BoolArray) -> Iterator[tuple[IntArray, bool]]:
+    """Unbroken pieces of a zone: their elements in order, and whether the piece closes on itself."""
+    after = mesh.elements[:, 2]
+    before = mesh.before
+    left = in_zone.copy()
+    starts = [*np.flatnonzero(in_zone & ~in_zone[before]), *np.flatnonzero(in_zone)]
+    for start in starts:
+        if not left[start]:
+            continue
+        run, element = [], start
+        while left[element]:
+            left[element] = False
+            run.append(element)
+            element = after[element]
+        yield np.array(run), bool(element == start)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BoundaryValues:
     """Prescribed displacements and tractions on the boundary; zero where nothing is prescribed.
