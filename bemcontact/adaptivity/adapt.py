@@ -11,7 +11,14 @@ from bemcontact.adaptivity.fields import MeshDifference, Solved, solved, solved_
 from bemcontact.adaptivity.hidden_changes import told_apart
 from bemcontact.adaptivity.mesh_search import MeshSearch
 from bemcontact.adaptivity.mesh_sizes import MOST_UNKNOWNS, cut
-from bemcontact.adaptivity.resting_contacts import MOST_STEPS, after_motion, matters, may_move, with_resting_contacts
+from bemcontact.adaptivity.resting_contacts import (
+    MOST_STEPS,
+    after_motion,
+    has_cases,
+    matters,
+    may_move,
+    with_resting_contacts,
+)
 from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.bem.condense import Condensation, Condenser, condensed
@@ -102,7 +109,7 @@ def stated(
     reason = NONE_ASKED if asked is None else NOT_ESTIMATED
     progress("mesh as stated")
     condensation, judged = condenser(problem), errors and asked is not None
-    if not judged and not may_move(problem):
+    if not judged and not (may_move(problem) and (errors or not has_cases(problem))):
         return _unsolved(problem, condensation, asked, reason)
     try:
         own = with_resting_contacts(solved_state(condensation), condenser)

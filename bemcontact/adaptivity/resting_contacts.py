@@ -50,7 +50,7 @@ SLOWEST = 0.5
 def with_resting_contacts(answer: Solved, condenser: Condenser) -> Solved:
     """The answer with contacts after the motion of their sides; as it is if these rest already, or never come to rest.
 
-    Load cases that share a condensation share its contacts, so these stay as they are.
+    Load cases that share a mesh share its pairs of elastic bodies, so these stay as they are.
     """
     found, last = answer, np.inf
     for _ in range(MOST_STEPS):
@@ -68,8 +68,8 @@ def with_resting_contacts(answer: Solved, condenser: Condenser) -> Solved:
 
 
 def may_move(problem: Problem) -> bool:
-    """Whether the problem has contacts that change with a motion, and no load cases that share them."""
-    return bool(_pairs(problem) or _curved(problem)) and (problem.case is not None or not problem.load_cases)
+    """Whether the problem has contacts that change with a motion; load cases share pairs of elastic bodies."""
+    return bool(_curved(problem) or (_pairs(problem) and not has_cases(problem)))
 
 
 def matters(problem: Problem, change: float) -> bool:
@@ -108,15 +108,20 @@ def after_motion(answer: Solved) -> tuple[Problem, float]:
     Followed are the components that are large beside the differences within contact: others are deformations, as all
     motion across a line of symmetry is.
     """
-    problem = answer.body.problem
-    if not may_move(problem):
-        return problem, 0.0
-    (case,), ways, change = answer.answers, dict[str, Point](), 0.0
-    least = RESTING * _judged_to(problem)
-    for name, way, of_peak in (*_ways_of_pairs(answer.body, case), *_ways_of_rigid(answer.body, case)):
-        if of_peak > least:
-            ways[name], change = way, max(change, of_peak)
-    return problem.after_motions(ways), change
+    problem, change = answer.body.problem, 0.0
+    least, shared = RESTING * _judged_to(problem), has_cases(problem)
+    for name, case in zip(problem.case_names if shared else (None,), answer.answers, strict=True):
+        found = (*(() if shared else _ways_of_pairs(answer.body, case)), *_ways_of_rigid(case))
+        ways = {zone: way for zone, way, of_peak in found if of_peak > least}
+        change = max(change, *(of_peak for zone, _, of_peak in found if zone in ways), 0.0)
+        if ways:
+            problem = problem.after_motions(ways, name)
+    return problem, change
+
+
+def has_cases(problem: Problem) -> bool:
+    """Whether the problem has load cases on one mesh."""
+    return bool(problem.load_cases) and problem.case is None
 
 
 def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Point, float]]:
@@ -131,12 +136,13 @@ def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Point, f
         yield name, (x, y), motion.change_of_peak(step)
 
 
-def _ways_of_rigid(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Point, float]]:
+def _ways_of_rigid(case: CaseAnswer) -> Iterator[tuple[str, Point, float]]:
     """For each curved rigid surface, where it is beside the body, and what that may change.
 
     A peak is off by about half of what gaps are off beside the displacement scale of contact, or normals are.
     """
-    contact, solution, names = case.condensation.contact, case.solution, [*body.problem.zones]
+    body, contact, solution = case.condensation.body, case.condensation.contact, case.solution
+    names = [*body.problem.zones]
     gaps, displacement = surface_gaps(body, case.state, contact, solution), np.zeros((len(body.mesh.nodes), 2))
     displacement[body.mesh.elements] = case.displacement
     scale, (inward, reach) = contact.scales.displacement, body.outline.sides

@@ -76,10 +76,17 @@ class Condensation:
     bond: Bond | None = None
 
     def acting(self, case: str | None = None) -> "Condensation":
-        """The body under the load case or combination that acts, or another one; `ProblemError` as of `body_of`."""
+        """The body under the load case or combination that acts, or another one; `ProblemError` as of `body_of`.
+
+        It is condensed once more if rigid surfaces are elsewhere beside it than here.
+        """
         problem = self.body.problem if case is None else self.body.problem.with_case(case)
         if problem.case is None:
             return self
+        if problem.zones is not self.body.problem.zones:
+            moved = condensed(problem)
+            if np.array_equal(moved.contact.points, self.contact.points):  # else they could not be compared
+                return moved
         body = replace(self.body, problem=problem)
         ensure_held(body)
         contact = self.contact.with_factors(problem.factors())

@@ -364,7 +364,9 @@ class Problem(StatedBodies):
             If there is no load case or combination of this name.
         """
         self.factors(text_of_argument(name, "the name of a load case"))
-        return self.model_copy(update={"case": name})
+        acting, moved = self.model_copy(update={"case": name}), self._ways.get(self.case or "", {})
+        ways = {**dict.fromkeys(moved, (0.0, 0.0)), **self._ways.get(name, {})}
+        return acting.after_motions(ways) if ways else acting
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:
         """Copy in which load cases act with given factors, as a combination whose name lists them.

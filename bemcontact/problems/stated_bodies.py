@@ -86,6 +86,8 @@ class StatedBodies(SpecModel, Drawn):
     """Bonded interfaces by name; likewise."""
     _zones: dict[str, ContactZone | BodyZone] = PrivateAttr(default_factory=dict)
     """Contact zones and contacts by name; likewise."""
+    _ways: dict[str, dict[str, Point]] = PrivateAttr(default_factory=dict)
+    """Displacements [L] of rigid surfaces beside the body under load cases, by load case and zone."""
 
     @property
     def several(self) -> bool:
@@ -308,11 +310,18 @@ class StatedBodies(SpecModel, Drawn):
             assert isinstance(zone, BodyZone)
             zones[name] = replace(zone, surface=replace(zone.surface, offset=contact.gap))
         problem._zones, problem._opposite, problem._bonds = zones, other._opposite, dict(other.bonds)
+        problem._ways = other._ways
         return problem
 
-    def after_motions(self, motions: Mapping[str, Point]) -> Self:
-        """Copy after displacements [L] of the second body, or of a rigid surface, beside the first one, by zone."""
+    def after_motions(self, motions: Mapping[str, Point], case: str | None = None) -> Self:
+        """Copy after displacements [L] of the second body, or of a rigid surface, beside the first one, by zone.
+
+        Where a load case is named, rigid surfaces have them where it acts.
+        """
         problem = self.model_copy()
+        if case is not None:
+            problem._ways = {**self._ways, case: {**self._ways.get(case, {}), **motions}}
+            return problem
         problem._zones = {
             name: zone.after(motions[name]) if name in motions else zone for name, zone in self.zones.items()
         }

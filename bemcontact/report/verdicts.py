@@ -114,7 +114,7 @@ def case_verdicts(cases: CaseResults) -> tuple[Verdict, Verdict]:
     equations, mesh = ({name: pair[i] for name, pair in pairs.items() if not pair[i].good} for i in range(2))
     largest = max(cases.results, key=lambda name: cases.results[name].accuracy.worst)
     shared = (
-        f"{pairs[largest][1].words[:-1]}, under {largest}; one mesh serves all load cases, so that they can be added"
+        f"{pairs[largest][1].words[:-1]}, under {largest}; one mesh serves all load cases, so that they can be compared"
     )
     return (
         _together(pairs[largest][0]._replace(words="In every load case."), equations),

@@ -183,3 +183,40 @@ def test_a_spline_that_moves_away_from_where_it_is_drawn_has_its_ends_with_it():
     bars = [bar.bar for result in (moved, there) for bar in result.accuracy.bars if bar.quantity == "peak"]
     assert moved.peak.pressure == pytest.approx(there.peak.pressure, rel=sum(bars))
     assert moved.intervals[0].length == pytest.approx(there.intervals[0].length, rel=0.005)
+
+
+@pytest.mark.slow
+def test_each_load_case_has_surfaces_where_it_moves_them():
+    """A shaft in a bush, pressed down, aside and both ways: each is that of a shaft drawn where it comes to lie.
+
+    The bush is alike in all directions, so that the first two have one peak, by Lamé's symmetry and no other number.
+    """
+    cases = {"down": {"y": -100}, "aside": {"x": 100}}
+    spec: dict[str, object] = {
+        "name": "bush",
+        "accuracy": 0.02,
+        "material": {"young_modulus": 2000, "poisson_ratio": 0.3},
+        "boundary": {
+            "outer": [{"name": "outside", "kind": "arc", "center": [0, 0], "radius": 20, "angles": [-90, 270]}],
+            "holes": [[{"name": "bore", "kind": "arc", "center": [0, 0], "radius": 12, "angles": [270, -90]}]],
+        },
+        "conditions": {"outside": {"fixed": True}},
+        "tools": {"shaft": {"zones": "seat", "force": {"x": 0, "y": 0}}},
+        "load_cases": {name: {"tools": {"shaft": {"force": force}}} for name, force in cases.items()},
+        "combinations": {"both": {"down": 1, "aside": 0.5}},
+    }
+
+    def seat(x: float, y: float) -> dict[str, object]:
+        surface = {"kind": "circle", "center": [x, y], "radius": 11, "body": "outside"}
+        return {"contact_zones": {"seat": {"edges": "bore", "surface": surface}}}
+
+    shared = bemcontact.solve_cases(bemcontact.problem({**spec, **seat(0, 0)}))
+    assert shared.holds
+    peaks = {name: result.peak.pressure for name, result in shared.results.items() if result.peak is not None}
+    for name, (x, y) in {"down": (0, -1), "aside": (1, 0), "both": (0.5 / 1.25**0.5, -1 / 1.25**0.5)}.items():
+        assert not any("against the surface" in note for note in shared.results[name].notes)
+        there = bemcontact.solve(bemcontact.problem({**spec, **seat(x, y)}), case=name)
+        bars = [shared.results[name].accuracy.peak_bar(), there.accuracy.peak_bar()]
+        assert there.peak is not None
+        assert peaks[name] == pytest.approx(there.peak.pressure, rel=sum(bar or 0 for bar in bars))
+    assert peaks["down"] == pytest.approx(peaks["aside"], rel=0.01)

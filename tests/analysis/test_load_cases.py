@@ -28,7 +28,6 @@ from bemcontact import spec
 from bemcontact.analysis import compare as comparing
 from bemcontact.analysis import load_cases
 from bemcontact.analysis import solve as analysis
-from bemcontact.analysis.placement import LEAST_ASKED, NOTED
 from bemcontact.analysis.result import Result
 from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import condense, condensed
@@ -94,13 +93,12 @@ def test_combination_is_what_a_spec_without_load_cases_finds(stated: Spec, cases
 def test_cases_condensed_together_are_those_condensed_alone(name: str):
     """`solve_cases` condenses once, `solve` with a case each time; the answers are the same numbers to round-off.
 
-    But for what `solve` follows the motion beside the circle of the punch.
+    The circle of the punch follows the motion, which differs from case to case.
     """
     together, problem = held_cases().results[name], made(HELD, **HELD_CASES, case=name)
-    alone, as_drawn = bemcontact.solve(problem), bemcontact.solve(condensed(problem).contact)
+    alone = bemcontact.solve(problem)
     assert together.certified
-    assert same(together.solution.pressure, as_drawn.solution.pressure, 1e-13)
-    assert together.peak.pressure == pytest.approx(alone.peak.pressure, rel=NOTED * LEAST_ASKED)
+    assert same(together.solution.pressure, alone.solution.pressure, 1e-13)
     assert together.problem == alone.problem
     assert together.contact.name == alone.contact.name == f"held block, {name}"
 
