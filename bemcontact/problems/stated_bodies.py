@@ -35,6 +35,7 @@ from bemcontact.problems.rigid_surface import DeflectedContour
 from bemcontact.problems.units import Units
 from bemcontact.problems.validation import Name, Point, SpecModel, Text, Title, left_out
 from bemcontact.problems.visibility import edges_that_see, zone_edges
+from bemcontact.problems.way import Way
 from bemcontact.views import Drawn
 
 REACH = 0.03
@@ -302,7 +303,7 @@ class StatedBodies(SpecModel, Drawn):
         zones: dict[str, ContactZone | BodyZone] = {}
         for name, zone in self.contact_zones.items():
             surface = other.zones[name].surface
-            zones[name] = zone if isinstance(surface, DeflectedContour) else zone.after(surface.approach)
+            zones[name] = zone if isinstance(surface, DeflectedContour) else zone.after(surface.way)
         for name, contact in self.contacts.items():
             zone = other.zones[name]
             assert isinstance(zone, BodyZone)
@@ -310,8 +311,8 @@ class StatedBodies(SpecModel, Drawn):
         problem._zones, problem._opposite, problem._bonds = zones, other._opposite, dict(other.bonds)
         return problem
 
-    def after_motions(self, motions: Mapping[str, Point]) -> Self:
-        """Copy after displacements [L] of the second body, or of a rigid surface, beside the first one, by zone."""
+    def after_motions(self, motions: Mapping[str, Way]) -> Self:
+        """Copy after motions of the second body, or of a rigid surface, beside the first one, by zone."""
         problem = self.model_copy()
         problem._zones = {
             name: zone.after(motions[name]) if name in motions else zone for name, zone in self.zones.items()
