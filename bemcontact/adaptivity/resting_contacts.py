@@ -21,13 +21,13 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
 from bemcontact.problems.approach import moved_together
 from bemcontact.problems.body_surface import BodySurface
-from bemcontact.problems.curves import Segment
+from bemcontact.problems.curves import Segment, cross
 from bemcontact.problems.edge_places import curvatures, nearest_on, places_at
 from bemcontact.problems.nearest_places import surface_corners
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import DeflectedContour, Plane
-from bemcontact.problems.surface_lines import LineSurface, Polyline
-from bemcontact.problems.validation import Point
+from bemcontact.problems.surface_lines import Faces, LineSurface, Polyline
+from bemcontact.problems.way import Way
 
 RESTING = 0.05
 """Part of the accuracy by which the peak pressure may change with the pairs."""
@@ -88,25 +88,32 @@ def _pairs(problem: Problem) -> dict[str, BodySurface]:
 
 
 def _curved(problem: Problem) -> dict[str, LineSurface | BodySurface]:
-    """Rigid surfaces that are curved, by name of the zone: along a straight one nothing changes.
+    """Rigid surfaces that are curved or may turn, by name of the zone: along a straight one nothing else changes.
 
     Not those with a corner that presses on an edge: an element ends there, which does not follow it.
     """
     surfaces = {name: zone.surface for name, zone in problem.zones.items()}
-    curved = {name: it for name, it in surfaces.items() if not isinstance(it, DeflectedContour | Plane | Polyline)}
+    turning = {zone for tool in problem.tools.values() for zone in tool.zones if tool.free[2] or tool.position[2]}
+    curved = {name: it for name, it in surfaces.items() if not isinstance(it, DeflectedContour | Polyline)}
     return {
         name: it
         for name, it in curved.items()
-        if not (isinstance(it, BodySurface) and (it.elastic or all(isinstance(e.curve, Segment) for e in it.edges)))
+        if not (isinstance(it, BodySurface) and it.elastic)
+        and (name in turning or not _is_straight(it))
         and not any(True for edge in map(problem.edge, problem.edges_of(name)) for _ in surface_corners(edge, it))
     }
+
+
+def _is_straight(surface: LineSurface | BodySurface) -> bool:
+    edges = surface.edges if isinstance(surface, BodySurface) else ()
+    return isinstance(surface, Plane) or (bool(edges) and all(isinstance(edge.curve, Segment) for edge in edges))
 
 
 def after_motion(answer: Solved) -> tuple[Problem, float]:
     """The problem with contacts after the motion of their sides, and the largest part by which that may change a peak.
 
     Followed are the components that are large beside the differences within contact: others are deformations, as all
-    motion across a line of symmetry is.
+    motion across a line of symmetry is. Rigid surfaces turn with their tools.
     """
     problem, change = answer.body.problem, 0.0
     least, shared = RESTING * _judged_to(problem), has_cases(problem)
@@ -124,22 +131,23 @@ def has_cases(problem: Problem) -> bool:
     return bool(problem.load_cases) and problem.case is None
 
 
-def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Point, float]]:
+def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:
     """For each contact of two elastic bodies, where the second one is beside the first, and what that may change."""
     moved = motions_of_pairs(body, case.condensation.contact, case.solution.pressure, case.displacement)
     for name, motion in moved.items():
         surface = _pairs(body.problem)[name]
-        step = motion.mean - surface.approach
+        step = motion.mean - surface.approach.step
         step[abs(step) <= AS_A_WHOLE * motion.spread] = 0.0
         step[_axes_of_symmetry(body, name)] = 0.0
-        x, y = np.add(surface.approach, step).tolist()
-        yield name, (x, y), motion.change_of_peak(step)
+        x, y = (surface.approach.step + step).tolist()
+        yield name, Way(x, y), motion.change_of_peak(step)
 
 
-def _ways_of_rigid(case: CaseAnswer) -> Iterator[tuple[str, Point, float]]:
+def _ways_of_rigid(case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:
     """For each curved rigid surface, where it is beside the body, and what that may change.
 
-    A peak is off by about half of what gaps are off beside the displacement scale of contact, or normals are.
+    A peak is off by about half of what gaps are off beside the displacement scale of contact, or normals are. On a tool
+    that is free to turn, it is also off by what the lever of the force is off beside the length that is pressed.
     """
     body, contact, solution = case.condensation.body, case.condensation.contact, case.solution
     names = [*body.problem.zones]
@@ -152,17 +160,26 @@ def _ways_of_rigid(case: CaseAnswer) -> Iterator[tuple[str, Point, float]]:
         at, force = body.points.node[beside], (contact.weights * solution.pressure)[beside]
         if not force.any():
             continue
-        places = body.mesh.nodes[at]
-        motion = gaps.tool_motion(name, places) - displacement[at]
-        mean = force @ motion / force.sum()
+        places, (tool, turn, about) = body.mesh.nodes[at], gaps.motion_of_tool(name)
+        spin, steps = Way(turn=turn, about=(float(about[0]), float(about[1]))), tool - displacement[at]
+        motion = steps + spin.motion_at(places - steps)
+        mean, step = (force @ item / force.sum() for item in (motion, steps))
         spread = np.sqrt(force @ (motion - mean) ** 2 / force.sum())
         still = abs(motion).min(axis=0) <= ROUND_OFF * abs(motion).max()  # as at a line of symmetry
-        x, y = np.where(still | (abs(mean) <= AS_A_WHOLE * spread), 0.0, mean).tolist()
-        now, there = (item.faces(places, inward[at], reach[at]) for item in (surface, surface.after((x, y))))
-        turned = there.normals - now.normals
-        off = there.gap - now.gap - np.einsum("ksx,kx->ks", turned, motion)
-        part = max(float(abs(off).max()) / scale, float(np.hypot(*turned.T).max())) / 2
-        yield name, (x, y), part * (JUMPS if isinstance(surface, BodySurface) else 1.0)
+        x, y = (step - np.where(still | (abs(mean) <= AS_A_WHOLE * spread), mean, 0.0)).tolist()
+        way, found = spin._replace(x=x, y=y), list[Faces]()
+        for item in (surface, surface.after(way)):
+            faces, moved = item.faces(places, inward[at], reach[at]), steps + spin.motion_at(places - item.way.step)
+            found.append(faces._replace(gap=faces.gap - np.einsum("ksx,kx->ks", faces.normals, moved)))
+        now, there = found
+        off = float(abs(there.gap - now.gap).max()) / scale
+        turned = 0.0 if _is_straight(surface) else float(np.hypot(*(there.normals - now.normals).T).max())
+        part = max(off, turned) / 2
+        part *= JUMPS if isinstance(surface, BodySurface) else 1.0
+        if any(tool.free[2] for tool in body.problem.tools.values() if name in tool.zones):
+            across = abs(cross(force @ now.normals[:, 1], way.step - surface.way.step)) / force.sum()
+            part = max(part, float(across) / contact.weights[beside][force > 0].sum())
+        yield name, way, part
 
 
 def _axes_of_symmetry(body: Body, contact: str) -> list[int]:

@@ -257,7 +257,7 @@ def beyond_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
         if not isinstance(zone.surface, Polyline | Spline):
             continue
         pressed = body.mesh.nodes[points.node[touching & (points.zone == number)]]
-        beyond = pressed[zone.surface.beyond_ends(pressed - zone.surface.way)] if len(pressed) else pressed
+        beyond = pressed[zone.surface.beyond_ends(zone.surface.way.back(pressed))] if len(pressed) else pressed
         if len(beyond):
             x, y = beyond[0]
             yield (

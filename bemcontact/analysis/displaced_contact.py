@@ -1,6 +1,6 @@
 """Contact points after they have moved: exact gaps, turned normals, and the levers that forces have there."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -8,12 +8,14 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import ALIKE, SMOOTH, ContactPoints
+from bemcontact.bem.free_motions import steps_of_surfaces
 from bemcontact.bem.mesh import Mesh, MeshPart
 from bemcontact.bem.surface_gaps import SAME_FACE, SurfaceGaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problems.body_surface import BodySurface
 from bemcontact.problems.conditions import Condition
+from bemcontact.problems.curves import cross
 from bemcontact.problems.surface_lines import STEEP, Polyline
 
 
@@ -157,7 +159,21 @@ def load_after(
         force, moment = _gain_of_levers(gaps, body, part, center)
         if abs(moment) > enough:
             load = load + motions.of_body(number).work_of(force, moment, about=center)
+    for number, tool in enumerate(gaps.problem.tools.values()):
+        moment = _gain_of_levers_of_tool(gaps, body.points, contact, solution, tool.zones)
+        if abs(moment) > enough:
+            load = load - moment * motions.tools[3 * number + 2]
     return load
+
+
+def _gain_of_levers_of_tool(
+    gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution, zones: Sequence[str]
+) -> float:
+    """Moment that pressure on the body gains about the point of a tool, by motion that contact has not followed."""
+    own = np.isin(contact.zone, [contact.zone_names.index(zone) for zone in zones])
+    beside = _at_points(gaps, points)[own] - gaps.motion_of_tool(zones[0])[0]
+    forces = (contact.weights * solution.pressure)[own, None] * contact.normals[own]
+    return float(np.sum(cross(beside + steps_of_surfaces(gaps.problem)[contact.zone[own]], forces)))
 
 
 def turn_of_body(gaps: SurfaceGaps, part: MeshPart | None = None) -> float:
@@ -210,7 +226,8 @@ def _load_of_turns(
     for number, name in enumerate(contact.tools.names):
         zones = [contact.zone_names.index(zone) for zone in gaps.problem.tools[name].zones]
         own = np.isin(contact.zone, zones)
-        x, y = (contact.points[own] - contact.tools.point[number]).T
+        steps = steps_of_surfaces(gaps.problem)[contact.zone[own]]
+        x, y = (contact.points[own] - steps - contact.tools.point[number]).T
         fx, fy = forces[own].T
         load = np.array([fx.sum(), fy.sum(), (x * fy - y * fx).sum()])
         work = work - load @ motions.tools[3 * number : 3 * number + 3]

@@ -151,7 +151,7 @@ def _pairs_changed(
         surface = gaps.surfaces[zone]
         if not isinstance(surface, BodySurface):
             continue
-        motion = np.subtract(surface.approach, found.mean)
+        motion = surface.approach.step - found.mean
         part = found.change_of_peak(motion)
         if part < noted(gaps.problem):
             continue

@@ -10,7 +10,15 @@ from bemcontact.arrays import Array, BoolArray, nonnegative_residual
 from bemcontact.bem.bonds import BondedPoints
 from bemcontact.bem.candidates import contact_points
 from bemcontact.bem.contact_points import ContactPoints
-from bemcontact.bem.free_motions import BODY, UNSEEN, FreeMotions, PlacedTools, free_motions, placed_tools
+from bemcontact.bem.free_motions import (
+    BODY,
+    UNSEEN,
+    FreeMotions,
+    PlacedTools,
+    free_motions,
+    placed_tools,
+    steps_of_surfaces,
+)
 from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.outline import Outline
@@ -199,7 +207,7 @@ class Body:
         gap = held.gap + np.sum(held.normals * self.acting.values.displacement[held.node], axis=1)
         for number, tool in enumerate(self.problem.tools.values()):
             own = np.isin(held.zone, [[*self.problem.zones].index(zone) for zone in tool.zones])
-            arm = mesh.nodes[held.node] - self.tools.point[number]
+            arm = mesh.nodes[held.node] - steps_of_surfaces(self.problem)[held.zone] - self.tools.point[number]
             x, y, turn = position[3 * number : 3 * number + 3]
             moved = np.array([x, y]) + turn * np.column_stack([-arm[:, 1], arm[:, 0]])
             gap -= np.where(own, np.sum(held.normals * moved, axis=1), 0.0)

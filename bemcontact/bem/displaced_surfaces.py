@@ -13,6 +13,7 @@ from bemcontact.problems.body_surface import AnyShape, BodySurface
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import DeflectedContour
 from bemcontact.problems.surface_lines import Closest
+from bemcontact.problems.way import Way
 
 CHUNK = 8192
 """Number of places whose distance from a surface is computed at a time."""
@@ -49,10 +50,13 @@ class DisplacedSurfaces:
         """
         surface = self.surfaces[zone]
         surface = surface.continued if isinstance(surface, BodySurface) else surface
-        motion = self._motion_of(zone, surface, moved)
         if isinstance(surface, BodySurface) and surface.elastic:
-            motion = self._motion_of(zone, surface, moved - motion)
-        return _closest(surface, moved - motion)
+            motion = self._motion_of_body(surface, moved)
+            return _closest(surface, moved - self._motion_of_body(surface, moved - motion))
+        step, turn, about = self.motion_of_tool(zone)
+        way = Way(float(step[0]), float(step[1]), turn, (float(about[0]), float(about[1])))
+        gap, normals = _closest(surface, way.back(moved))
+        return Closest(gap, way.turned(normals))
 
     def from_other_side(self, zone: str, moved: Array) -> Closest:
         """Distance (k,) [L] of displaced places (k, 2) of the second elastic body from the displaced first one.
@@ -82,18 +86,25 @@ class DisplacedSurfaces:
         """Displacement (..., 2) [L] of the surface of a zone, or of one that goes on from it, as of `tool_motion`."""
         if isinstance(surface, BodySurface) and surface.elastic:
             return self._motion_of_body(surface, points, inward)
+        step, turn, about = self.motion_of_tool(zone)
+        return step + turn * _across(points - surface.way.step - about)
+
+    def motion_of_tool(self, zone: str) -> tuple[Array, float, Array]:
+        """Displacement (2,) [L] of the point of the tool of a zone, rotation [rad], and the point (2,) as drawn [L]."""
         for name, tool in self.problem.tools.items():
             if zone in tool.zones:
-                x, y, turn = self.tools[name]
-                offset = points - np.array(tool.point or (0.0, 0.0))
-                return np.stack([x - turn * offset[..., 1], y + turn * offset[..., 0]], axis=-1)
-        return np.zeros_like(points)
+                x, y, turn = self.tools[name].tolist()
+                return np.array([x, y]), turn, np.array(tool.point or (0.0, 0.0))
+        return np.zeros(2), 0.0, np.zeros(2)
 
     def turn_of_normals(self, zone: str, points: Array, normals: Array) -> Array:
-        """Change (k, 2) of normals (k, 2) at points (k, 2) [L] of a surface as its tool turns, or its body deforms."""
+        """Change (k, 2) of normals (k, 2) at points (k, 2) [L] of a surface as its tool turns, or its body deforms.
+
+        Not the turn of a tool that contact has followed.
+        """
         surface = self.surfaces[zone]
         if not (isinstance(surface, BodySurface) and surface.elastic):
-            return self.tool_motion(zone, normals) - self.tool_motion(zone, np.zeros((1, 2)))
+            return np.zeros_like(normals)
         return self._turn_of(surface, points, normals)
 
     def _motion_of_body(self, surface: BodySurface, points: Array, inward: Array | None = None) -> Array:
@@ -114,6 +125,11 @@ class DisplacedSurfaces:
         )
         slope = np.sum(change * normals, axis=1) / np.sum(along**2, axis=1)
         return -slope[:, None] * along
+
+
+def _across(vectors: Array) -> Array:
+    """Vectors (..., 2) turned counterclockwise by a right angle."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
 
 
 def _closest(surface: AnyShape, points: Array) -> Closest:

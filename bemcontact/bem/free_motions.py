@@ -13,6 +13,7 @@ from bemcontact.bem.rigid_motions import RigidMotions, echelon, short_svd
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.problems.contact_zone import RigidTool, ToolAction
 from bemcontact.problems.problem import Problem
+from bemcontact.problems.rigid_surface import DeflectedContour
 from bemcontact.problems.validation import Point
 
 MOST_WAYS = 3
@@ -35,6 +36,7 @@ class PlacedTools:
     ----------
     names : of the tools
     point : (t, 2) about which each turns [L]
+    places : (n, 2) of the contact points beside the surfaces as drawn: less the steps that contact has followed [L]
     motions : (n, 3 t) change -n·w of the gaps by a unit displacement along x and y [1], and by a unit rotation [L]
     free : (3 t,) whether the component is free
     position : (3 t, 1 + c) x, y [L] and rotation [rad] that are given: permanent, then by load case
@@ -43,6 +45,7 @@ class PlacedTools:
 
     names: tuple[str, ...]
     point: Array
+    places: Array
     motions: Array
     free: BoolArray
     position: Array
@@ -57,7 +60,7 @@ class PlacedTools:
         for tool, (x, y, turns) in enumerate(self.free.reshape(-1, 3)):
             moved = np.any(self.motions[:, 3 * tool : 3 * tool + 3], axis=1)
             if turns and moved.any():
-                middle = np.average(points.mesh.nodes[points.node[moved]], axis=0, weights=points.tributary[moved])
+                middle = np.average(self.places[moved], axis=0, weights=points.tributary[moved])
                 poles[tool] = np.where([y, x], middle, poles[tool])
         return poles
 
@@ -66,22 +69,31 @@ def placed_tools(problem: Problem, points: ContactPoints) -> PlacedTools:
     """Compute the motions of the contact points with the tools of a problem."""
     tools, cases = problem.tools, problem.load_cases
     names = tuple(problem.zones)
-    columns, places = [np.zeros((len(points), 0))], []
+    places = points.mesh.nodes[points.node] - steps_of_surfaces(problem)[points.zone]
+    columns, about = [np.zeros((len(points), 0))], []
     for tool in tools.values():
         place = np.array(tool.point or (0.0, 0.0))
         moved = np.isin(points.zone, [names.index(zone) for zone in tool.zones])
         turn = RigidMotions(coefficients=np.eye(3), center=place, radius=1.0)
-        columns.append(np.where(moved[:, None], -turn.along_normals(points), 0.0))
-        places.append(place)
+        along = np.einsum("nx,nxk->nk", points.normals, turn.displacement(places))
+        columns.append(np.where(moved[:, None], -along, 0.0))
+        about.append(place)
     actions: list[Mapping[str, ToolAction]] = [tools, *(case.tools for case in cases.values())]
     return PlacedTools(
         names=tuple(tools),
-        point=np.array(places).reshape(-1, 2),
+        point=np.array(about).reshape(-1, 2),
+        places=places,
         motions=np.hstack(columns),
         free=np.array([tool.free for tool in tools.values()], bool).ravel(),
         position=np.column_stack([_components(tools, action, "position") for action in actions]),
         force=np.column_stack([_components(tools, action, "load") for action in actions]),
     )
+
+
+def steps_of_surfaces(problem: Problem) -> Array:
+    """Displacements (z, 2) [L] that contact has followed, of the rigid surfaces of all zones; zero for others."""
+    surfaces = [zone.surface for zone in problem.zones.values()]
+    return np.array([(0.0, 0.0) if isinstance(it, DeflectedContour) else it.way.step for it in surfaces]).reshape(-1, 2)
 
 
 def _components(tools: Mapping[str, RigidTool], actions: Mapping[str, ToolAction], key: str) -> Array:

@@ -69,5 +69,5 @@ def _places(gaps: SurfaceGaps, zone: str, surface: BodySurface) -> list[tuple[st
             found.append((edge.name, state.points[own].reshape(-1, 2), state.displacement[own].reshape(-1, 2)))
         else:
             points = edge.points(SAMPLES)
-            found.append((edge.name, points, gaps.tool_motion(zone, points)))
+            found.append((edge.name, points, gaps.tool_motion(zone, points + surface.way.step)))
     return found

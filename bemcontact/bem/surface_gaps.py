@@ -150,8 +150,8 @@ class SurfaceGaps(DisplacedSurfaces):
     def _against(self, zone: str, elements: IntArray) -> Array:
         """Displacement (k, q, 2) [L] of elements (k,) beside that of the surface, where they come to touch it."""
         surface, places = self.surfaces[zone], self.outline.sampled(elements).points
-        way = surface.approach if isinstance(surface, BodySurface) else (0.0, 0.0)
-        return self._displacement[elements] - self.tool_motion(zone, places - np.array(way))
+        way = surface.approach.step if isinstance(surface, BodySurface) and surface.elastic else np.zeros(2)
+        return self._displacement[elements] - self.tool_motion(zone, places - way)
 
     def distance(self, zone: str, elements: IntArray) -> Array:
         """Distance (k, q) [L] of displaced places of elements (k,) from the displaced surface."""

@@ -11,6 +11,7 @@ from bemcontact.problems.curves import Edge
 from bemcontact.problems.edge_places import STEEPEST, TIE
 from bemcontact.problems.nearest_places import nearest_places, opposite_places
 from bemcontact.problems.validation import Point
+from bemcontact.problems.way import Way
 
 FEW = 200
 """Samples of an edge in the search for the places that are as near as the nearest one."""
@@ -54,12 +55,12 @@ def approach(edges: Sequence[Edge], surface: BodySurface) -> Point:
 def approached(zones: Mapping[str, BodyZone]) -> dict[str, BodyZone]:
     """Zones of bodies that touch other elastic ones, moved there as drawn."""
     touching = {name: zone.surface for name, zone in zones.items() if zone.surface.first}
-    ways: dict[str, Point] = {}
+    ways: dict[str, Way] = {}
     for signs in moved_together(touching):
         pairs = [_sides(touching[name])[:: int(sign)] for name, sign in signs.items()]
         first, second = (tuple(dict.fromkeys(edge for pair in pairs for edge in pair[i])) for i in (0, 1))
         x, y = approach(first, replace(touching[next(iter(signs))], edges=second, nearest={}))
-        ways |= {name: (sign * x, sign * y) for name, sign in signs.items()}
+        ways |= {name: Way(sign * x, sign * y) for name, sign in signs.items()}
     return {name: zone.after(ways[name]) if name in ways else zone for name, zone in zones.items()}
 
 

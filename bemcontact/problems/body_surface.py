@@ -25,7 +25,7 @@ from bemcontact.problems.edge_places import (
 )
 from bemcontact.problems.rigid_surface import RigidSurface, Shape
 from bemcontact.problems.surface_lines import Closest, Faces, between_normals, pressed_normals, ridge_beside, sees_ridge
-from bemcontact.problems.validation import Point
+from bemcontact.problems.way import AS_DRAWN, Way
 
 AT_END = 1e-9
 """Sine of the angle between the way to the end of an edge and the normal there from which the end itself is nearest."""
@@ -101,8 +101,7 @@ class BodySurface:
     share : part that the first side has in common normals: its modulus E / (1 - ν²) over the sum of both
     first : edges of the first side where it has such a part
     first_loops : all loops of that body
-    approach : displacement [L] of this body that makes it touch them; pairs, or the faces of a rigid body, are those
-        after it
+    approach : motion of this body that makes it touch them; pairs, or the faces of a rigid body, are those after it
     nearest : fractions of curves where they are nearest to it after a way, as far as they were looked for
     """
 
@@ -115,8 +114,8 @@ class BodySurface:
     share: float = 0.0
     first: tuple[Edge, ...] = ()
     first_loops: tuple[tuple[Edge, ...], ...] = ()
-    approach: Point = (0.0, 0.0)
-    nearest: dict[tuple[Curve, Point], tuple[float, ...]] = field(default_factory=dict)
+    approach: Way = AS_DRAWN
+    nearest: dict[tuple[Curve, Way], tuple[float, ...]] = field(default_factory=dict)
 
     @cached_property
     def _ends(self) -> tuple[Array, BoolArray]:
@@ -133,12 +132,12 @@ class BodySurface:
         return np.array(sums), np.array(corners)
 
     @property
-    def way(self) -> Array:
-        """The `approach` (2,) of a rigid body [L]; zero for an elastic one, of which pairs alone are after it."""
-        return np.array((0.0, 0.0) if self.elastic else self.approach)
+    def way(self) -> Way:
+        """The `approach` of a rigid body; none of an elastic one, of which pairs alone are after it."""
+        return AS_DRAWN if self.elastic else self.approach
 
-    def after(self, approach: Point) -> "BodySurface":
-        """The surface after another displacement [L] of its body."""
+    def after(self, approach: Way) -> "BodySurface":
+        """The surface after another motion of its body."""
         return replace(self, approach=approach)
 
     @cached_property
@@ -176,7 +175,7 @@ class BodySurface:
         """
         if not self.first:
             return self.feet(points)
-        moved, points = np.array(self.approach), np.asarray(points, float)
+        moved, points = self.approach.step, np.asarray(points, float)
         first, points = nearest_on(self.first, points), points - moved
         own_normals = -first.normals if inward is None else inward
         feet = self.feet(points)
@@ -224,10 +223,10 @@ class BodySurface:
         A part of it that is opposite to an edge of this body lies between them, however narrow it is. Where an end
         forms no pair, and beside it, so are the nearest places.
         """
-        places, moved = places_along(self.edges), np.array(self.approach)
+        places, moved = places_along(self.edges), self.approach.step
         there = edge.curve.nearest(places.points + moved)
         start = EdgePlaces(np.zeros(len(there), int), there, places.points + moved, places.normals)
-        shift, (own, other) = np.array([*self.approach, 0.0]), self._weights
+        shift, (own, other) = np.array([*self.approach.step, 0.0]), self._weights
         weights = NormalWeight(other.most, other.corners + shift), NormalWeight(own.most, own.corners + shift)
         pairs, _, _ = paired_on((edge,), start, start.points, -places.normals, weights)
         return np.concatenate([there, pairs.fraction])
@@ -237,7 +236,7 @@ class BodySurface:
         """Weights of the normals of both sides in common ones, the first one moved towards this body as it is drawn."""
         if not self.first:
             return NormalWeight(self.share, np.zeros((0, 3))), NormalWeight(1 - self.share, np.zeros((0, 3)))
-        own = bent_joints(self.first, self.edges) - np.array([*self.approach, 0.0])
+        own = bent_joints(self.first, self.edges) - np.array([*self.approach.step, 0.0])
         return NormalWeight(self.share, own), NormalWeight(1 - self.share, bent_joints(self.edges, self.first))
 
     def beside(self, feet: Feet) -> Array:
@@ -262,7 +261,8 @@ class BodySurface:
         (k,) [L]. A convex corner presses on a smooth boundary along its normal, as far as that is between the normals
         of the edges.
         """
-        points = points - self.way
+        way, displaced = self.way, points
+        points, inward = way.back(points), way.turned(inward, -1.0)
         pairs = self.pairs(points, inward[:, 0])
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in (pairs.gap + self.offset, pairs.normals))
         turns = abs(cross(inward[:, 0], inward[:, 1])) > CORNER
@@ -282,7 +282,7 @@ class BodySurface:
                     chosen = np.where(turns[at, None], chosen, between_normals(inward[at, side], own[:1], own[1:]))
                 held.normals[at, column] = held.faces[at, column] = chosen
                 held.gap[at, column] = np.sum((points[at] - joint) * chosen, axis=1) + self.offset
-        return held.before(self.way)
+        return held.after(way, displaced)
 
     def _press_on_ridges(self, points: Array, inward: Array, feet: Feet, held: Faces) -> None:
         """Put the normals of the other body beside convex corners of this rigid one, as `Polyline` does.
@@ -384,6 +384,6 @@ class BodyZone:
     edges: tuple[str, ...]
     surface: BodySurface
 
-    def after(self, approach: Point) -> "BodyZone":
-        """The zone after another displacement [L] of the body that is touched."""
+    def after(self, approach: Way) -> "BodyZone":
+        """The zone after another motion of the body that is touched."""
         return replace(self, surface=self.surface.after(approach))

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, mod
 from bemcontact.problems.rigid_surface import DeflectedContour, SurfaceSpec
 from bemcontact.problems.surface_lines import LOADED
 from bemcontact.problems.validation import Name, Number, Point, SpecModel, invalid
+from bemcontact.problems.way import Way
 
 CANCELLED = 1e-14
 """Fraction of the terms of a sum below which the sum is round-off of factors such as 0.1."""
@@ -45,10 +46,10 @@ class ContactZone(SpecModel):
     surface: SurfaceSpec
     """The rigid surface."""
 
-    def after(self, approach: Point) -> Self:
-        """Copy after another displacement [L] of its surface, no deflected contour, beside the body."""
+    def after(self, way: Way) -> Self:
+        """Copy after another motion of its surface, no deflected contour, beside the body."""
         assert not isinstance(self.surface, DeflectedContour)
-        return self.model_copy(update={"surface": self.surface.after(approach)})
+        return self.model_copy(update={"surface": self.surface.after(way)})
 
     @model_validator(mode="after")
     def _contour_of_edges(self) -> Self:

@@ -32,7 +32,7 @@ def nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
     """
     if isinstance(surface, Polyline):
         return _nearest_places(curve, surface)
-    key = curve, surface.approach
+    key = curve, surface.way
     if key not in surface.nearest:
         surface.nearest[key] = _nearest_places(curve, surface)
     return surface.nearest[key]
@@ -59,7 +59,7 @@ def _nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
 def opposite_places(curve: Curve, surface: AnyShape) -> Array:
     """Fractions of the length of an edge that are nearest to places of a body: a narrow one is between samples."""
     return (
-        curve.nearest(places_along(surface.edges).points + surface.way)
+        curve.nearest(surface.way.forth(places_along(surface.edges).points))
         if isinstance(surface, BodySurface)
         else np.zeros(0)
     )
@@ -67,7 +67,7 @@ def opposite_places(curve: Curve, surface: AnyShape) -> Array:
 
 def gaps(curve: Curve, surface: AnyShape, fractions: Array) -> Array:
     """Gap [L] after its way at fractions of the length of an edge, of any shape; beyond its ends that of the ends."""
-    places = curve.at(np.clip(fractions, 0, 1).ravel()) - surface.way
+    places = surface.way.back(curve.at(np.clip(fractions, 0, 1).ravel()))
     return surface.closest(places).gap.reshape(fractions.shape)
 
 
@@ -93,7 +93,7 @@ def surface_corners(edge: Edge, surface: AnySurface, *, at_ends: bool = False) -
         yield from _corners_of_body(edge, surface)
     if not isinstance(surface, Polyline):
         return
-    corners = np.array(surface.points)[1:-1] + surface.way
+    corners = surface.way.forth(np.array(surface.points)[1:-1])
     for (x, y), turn in zip(corners.tolist(), surface.turns.tolist(), strict=True):
         fraction = edge.curve.fraction_at((x, y))
         if AT_END < fraction < 1 - AT_END or (at_ends and _is_opposite(edge, round(fraction), (x, y))):
@@ -103,8 +103,9 @@ def surface_corners(edge: Edge, surface: AnySurface, *, at_ends: bool = False) -
 def _corners_of_body(edge: Edge, surface: BodySurface) -> Iterator[SurfaceCorner]:
     """Where an edge is nearest to a corner of a body, to both sides of which it is turned there."""
     for corner, normals, _ in surface.joints:
-        fraction = edge.curve.nearest(corner[None] + surface.way)
-        if AT_END < fraction[0] < 1 - AT_END and turned_to(-edge.normals(fraction), normals).all():
+        fraction = edge.curve.nearest(surface.way.forth(corner[None]))
+        inward = surface.way.turned(-edge.normals(fraction), -1.0)
+        if AT_END < fraction[0] < 1 - AT_END and turned_to(inward, normals).all():
             (x, y), (u, v) = normals
             yield SurfaceCorner(float(fraction[0]), float(np.arctan2(x * v - y * u, x * u + y * v)))
 

@@ -90,7 +90,7 @@ def _largest_gap(edges: Sequence[Edge], surface: BodySurface, reach: float) -> f
     """Gap [L] up to which places of edges are opposite to a surface."""
     if not np.isfinite(reach):
         return np.inf
-    gaps = (surface.feet(edge.points(_samples(edge, surface)) - surface.way).gap for edge in edges)
+    gaps = (surface.feet(surface.way.back(edge.points(_samples(edge, surface)))).gap for edge in edges)
     return max(min((float(gap.min()) for gap in gaps), default=0.0), 0.0) + reach
 
 
@@ -120,11 +120,12 @@ def _parts_of(edge: Edge, surface: BodySurface, most: float) -> list[OppositePar
     """Opposite parts of one edge, up to a gap [L]."""
 
     def opposite(at: Array) -> tuple[IntArray, Array]:
-        feet = surface.pairs(edge.points(at) - surface.way, -edge.normals(at))
-        turned = turned_to(-edge.normals(at), feet.normals)
+        inward = surface.way.turned(-edge.normals(at), -1.0)
+        feet = surface.pairs(surface.way.back(edge.points(at)), inward)
+        turned = turned_to(inward, feet.normals)
         one = ~feet.corner
         if not surface.elastic and feet.corner.any():
-            one |= _is_blunt(-edge.normals(at), feet, surface)
+            one |= _is_blunt(inward, feet, surface)
         return np.where(turned & one & (feet.gap <= most), feet.edge, -1), feet.fraction
 
     at = _samples(edge, surface)

@@ -58,6 +58,7 @@ from bemcontact.problems.validation import (
     missing_keys,
 )
 from bemcontact.problems.variant import Variant, issues_of_values
+from bemcontact.problems.way import AS_DRAWN
 from bemcontact.problems.wording import unknown_word
 
 ON_EDGE = 1e-9
@@ -365,7 +366,7 @@ class Problem(StatedBodies):
         """
         self.factors(text_of_argument(name, "the name of a load case"))
         acting, moved = self.model_copy(update={"case": name}), self._ways.get(self.case or "", {})
-        ways = {**dict.fromkeys(moved, (0.0, 0.0)), **self._ways.get(name, {})}
+        ways = {**dict.fromkeys(moved, AS_DRAWN), **self._ways.get(name, {})}
         return acting.after_motions(ways) if ways else acting
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:

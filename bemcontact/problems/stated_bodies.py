@@ -35,6 +35,7 @@ from bemcontact.problems.rigid_surface import DeflectedContour
 from bemcontact.problems.units import Units
 from bemcontact.problems.validation import Name, Point, SpecModel, Text, Title, left_out
 from bemcontact.problems.visibility import edges_that_see, zone_edges
+from bemcontact.problems.way import Way
 from bemcontact.views import Drawn
 
 REACH = 0.03
@@ -86,8 +87,8 @@ class StatedBodies(SpecModel, Drawn):
     """Bonded interfaces by name; likewise."""
     _zones: dict[str, ContactZone | BodyZone] = PrivateAttr(default_factory=dict)
     """Contact zones and contacts by name; likewise."""
-    _ways: dict[str, dict[str, Point]] = PrivateAttr(default_factory=dict)
-    """Displacements [L] of rigid surfaces beside the body under load cases, by load case and zone."""
+    _ways: dict[str, dict[str, Way]] = PrivateAttr(default_factory=dict)
+    """Motions of rigid surfaces beside the body under load cases, by load case and zone."""
 
     @property
     def several(self) -> bool:
@@ -304,7 +305,7 @@ class StatedBodies(SpecModel, Drawn):
         zones: dict[str, ContactZone | BodyZone] = {}
         for name, zone in self.contact_zones.items():
             surface = other.zones[name].surface
-            zones[name] = zone if isinstance(surface, DeflectedContour) else zone.after(surface.approach)
+            zones[name] = zone if isinstance(surface, DeflectedContour) else zone.after(surface.way)
         for name, contact in self.contacts.items():
             zone = other.zones[name]
             assert isinstance(zone, BodyZone)
@@ -313,8 +314,8 @@ class StatedBodies(SpecModel, Drawn):
         problem._ways = other._ways
         return problem
 
-    def after_motions(self, motions: Mapping[str, Point], case: str | None = None) -> Self:
-        """Copy after displacements [L] of the second body, or of a rigid surface, beside the first one, by zone.
+    def after_motions(self, motions: Mapping[str, Way], case: str | None = None) -> Self:
+        """Copy after motions of the second body, or of a rigid surface, beside the first one, by zone.
 
         Where a load case is named, rigid surfaces have them where it acts.
         """

@@ -13,6 +13,7 @@ from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.problems.curves import Curve, cross
 from bemcontact.problems.loops import first_meeting
 from bemcontact.problems.validation import Point, SpecModel, invalid
+from bemcontact.problems.way import AS_DRAWN, Way
 
 ON_CORNER = 1e-9
 """Distance of a point from a corner, relative to the extent of line and points, up to which it is on the corner."""
@@ -62,9 +63,10 @@ class Faces(NamedTuple):
         for own, new in zip(self, (gap, normals, faces), strict=True):
             own[here, column] = new[here]
 
-    def before(self, way: Array) -> "Faces":
-        """Those of a surface after a way (2,) [L], with gaps before it: less the way they are those after it."""
-        return Faces(self.gap + self.normals @ way, self.normals, self.faces)
+    def after(self, way: Way, points: Array) -> "Faces":
+        """Those of a surface after a way, at points (k, 2) [L], with gaps before it: less the way those there."""
+        normals, faces = way.turned(self.normals), way.turned(self.faces)
+        return Faces(self.gap + np.einsum("ksx,kx->ks", normals, way.motion_at(points)), normals, faces)
 
 
 LOADED: Mapping[str, str] = dict.fromkeys(
@@ -80,22 +82,17 @@ class LineSurface(SpecModel):
 
     other_words: ClassVar[Mapping[str, str]] = LOADED
 
-    _approach: Point = PrivateAttr((0.0, 0.0))
+    _way: Way = PrivateAttr(AS_DRAWN)
 
     @property
-    def approach(self) -> Point:
-        """Displacement [L] beside the body after which faces, and with them gaps and normals of contact, are found."""
-        return self._approach
+    def way(self) -> Way:
+        """Motion beside the body after which faces, and with them gaps and normals of contact, are found."""
+        return self._way
 
-    @property
-    def way(self) -> Array:
-        """The `approach` (2,) [L]."""
-        return np.array(self._approach)
-
-    def after(self, approach: Point) -> Self:
-        """Copy after another displacement [L] beside the body."""
+    def after(self, way: Way) -> Self:
+        """Copy after another motion beside the body."""
         moved = self.model_copy()
-        moved._approach = approach
+        moved._way = way
         return moved
 
     def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
@@ -107,7 +104,8 @@ class LineSurface(SpecModel):
         beside the corner only. It presses on both sides of a re-entrant corner of the body up to the distance `reach`
         (k,) [L].
         """
-        return self.faces_as_drawn(np.asarray(points, float) - self.way, inward, reach).before(self.way)
+        points, way = np.asarray(points, float), self.way
+        return self.faces_as_drawn(way.back(points), way.turned(inward, -1.0), reach).after(way, points)
 
     def faces_as_drawn(self, points: Array, inward: Array, reach: Array) -> Faces:
         """Those of the surface where it is drawn."""
@@ -118,7 +116,7 @@ class SmoothSurface(LineSurface):
     """A surface without corners: one face holds both sides of a point."""
 
     @cached_property
-    def nearest(self) -> dict[tuple[Curve, Point], tuple[float, ...]]:
+    def nearest(self) -> dict[tuple[Curve, Way], tuple[float, ...]]:
         """Fractions of curves where they are nearest to it after a way, as far as `nearest_places` looked for them."""
         return {}
 

@@ -220,3 +220,77 @@ def test_each_load_case_has_surfaces_where_it_moves_them():
         assert there.peak is not None
         assert peaks[name] == pytest.approx(there.peak.pressure, rel=sum(bar or 0 for bar in bars))
     assert peaks["down"] == pytest.approx(peaks["aside"], rel=0.01)
+
+
+def turned_roller(x: float, **roller: object) -> bemcontact.Result:
+    """A rigid roller of radius 5 above a block, drawn at x, that a tool displaces to x = 0 and turns about its axis."""
+    block = {"bottom": (-12, -8), "right": (12, -8), "top": (12, 0), "left": (-12, 0)}
+    return bemcontact.solve(
+        bemcontact.problem({
+            "name": "roller that turns",
+            "material": {"young_modulus": 1000, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{"name": name, "start": at} for name, at in block.items()]},
+            "conditions": {"bottom": {"fixed": True}},
+            "contact_zones": {"top": {"edges": "top", "surface": {
+                "kind": "circle", "center": (x, 5), "radius": 5, "body": "outside"}}},
+            "tools": {"roller": {"zones": "top", "point": (x, 5), **roller}},
+            "accuracy": 0.02,
+        })
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("x", "rotation"), [(0.0, 0.002), (0.0, 0.05), (-1.0, 0.002), (-1.0, 0.05)])
+def test_a_roller_that_turns_about_its_axis_is_the_same(x: float, rotation: float):
+    """So the turn changes nothing, wherever the roller is drawn; its lever is that of the place where it presses."""
+    turns, rests = (turned_roller(x, displacement={"x": -x, "y": -0.024, "rotation": turn}) for turn in (rotation, 0.0))
+    assert turns.holds
+    assert turns.forces["top"] == pytest.approx(rests.forces["top"], abs=1e-3)
+    assert turns.peak
+    assert rests.peak
+    assert turns.peak.pressure == pytest.approx(rests.peak.pressure, rel=1e-3)
+
+
+@pytest.mark.parametrize("x", [0.1, 1.0, -3.0])
+def test_a_roller_that_is_free_to_turn_presses_straight_down(x: float):
+    """A moment of 0 about its axis says that the force passes through the axis: it has no component along the block."""
+    result = turned_roller(x, displacement={"x": -x}, force={"y": -10, "moment": 0})
+    assert result.holds
+    assert result.forces["top"] == pytest.approx((0, -10), abs=0.025)
+
+
+@pytest.mark.parametrize(("drawn", "height"), [(1.0, 3.0), (0.0, 3.0), (0.5, 3.0), (0.0, 0.0)])
+@pytest.mark.parametrize("kind", ["plane", "circle"])
+def test_a_tool_rolls_on_a_dome_to_where_the_force_passes_through_its_point(kind: str, drawn: float, height: float):
+    """The point comes to x = 1 at a height h over a dome of radius R: normals through it are at x = 1 / (1 + h / R).
+
+    There the dome has the slope x / R, and so has the force.
+    """
+    radius, half = 50.0, 10.0
+    low = np.sqrt(radius**2 - half**2) - radius
+    surfaces = {
+        "plane": {"kind": "plane", "point": [drawn, 0], "normal": [0, -1]},
+        "circle": {"kind": "circle", "center": [drawn, 1000], "radius": 1000, "body": "outside"},
+    }
+    result = bemcontact.solve(
+        bemcontact.problem({
+            "name": "dome",
+            "material": {"young_modulus": 1000, "poisson_ratio": 0.3},
+            "boundary": {"outer": [
+                {"name": "bottom", "start": [-half, low - 10]},
+                {"name": "right", "start": [half, low - 10]},
+                {"name": "top", "kind": "arc", "center": [0, -radius], "start": [half, low], "end": [-half, low]},
+                {"name": "left", "start": [-half, low]},
+            ]},
+            "conditions": {"bottom": {"fixed": True}},
+            "contact_zones": {"top": {"edges": "top", "surface": surfaces[kind]}},
+            "tools": {"tool": {
+                "zones": "top", "point": [drawn, height], "displacement": {"x": 1 - drawn},
+                "force": {"y": -10, "moment": 0}}},
+            "accuracy": 0.02,
+        })
+    )  # fmt: skip
+    assert result.holds
+    at = 1 / (1 + height / radius)
+    ends = [end[0] for end in (result.intervals[0].start, result.intervals[0].end)]
+    assert sum(ends) / 2 == pytest.approx(at, abs=0.01)
+    assert result.forces["top"] == pytest.approx((-10 * at / radius, -10), abs=0.025)
