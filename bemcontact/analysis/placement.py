@@ -37,9 +37,9 @@ are mostly a few times smaller than the accuracy."""
 WITHHELD = 0.05
 """Change from which a result is not certified: the curvature is off by a tenth."""
 SMALL_COMPONENT = 0.15
-"""Component of a force over the force from which its change is judged by itself, and not by the force.
+"""Component of the force on a tool over the force from which its change is judged by itself, and not by the force.
 
-What the force of a tool prescribes does not change; the other component may, by far more than the force as a whole."""
+What is prescribed does not change; the other component may, by far more than the force as a whole."""
 SMALL_CONTACT = 0.08
 """Force of a contact over that of its zone from which it is judged by itself, and not by this part."""
 MOVES_ON = 0.8
@@ -54,8 +54,7 @@ UNSEEN = 1e-9
 NO_CHANGE = 1e-7
 """Difference of the gaps, over the displacement scale of contact, that changes nothing."""
 SAME = 1e-9
-"""Relative difference of two changes of a force that is round-off: where its direction stays, both components change
-alike."""
+"""Relative difference of the changes of two forces that is round-off, as of a body and its mirror image."""
 ALIKE = 0.1
 """Difference of displacements on the boundary, over one of them, up to which the body moves as a whole."""
 
@@ -332,7 +331,10 @@ def _forces_changed(
     gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution,
     again: ContactSolution, moved: Displaced,
 ) -> tuple[Penetration | None, tuple[str, ...]]:  # fmt: skip
-    """Judge how the force of each contact changes with the gaps and normals of the displaced places."""
+    """Judge how the force of each contact changes with the gaps and normals of the displaced places.
+
+    The force on a tool that is free along one axis is judged along the other one by that component.
+    """
     if again.status is not Status.SOLVED:
         return None, ()  # as is said of the peak
     zones, within = _contacts(contact, solution, again)
@@ -341,10 +343,12 @@ def _forces_changed(
     is_now = (own * again.pressure) @ (contact.normals + moved.turn)
     of_zone = contact.lengths_by_zone @ solution.pressure
     total = np.maximum(abs(own) @ solution.pressure, SMALL_CONTACT * of_zone[zones])
-    size = np.where(abs(was) >= SMALL_COMPONENT * total[:, None], abs(was), total[:, None])
-    parts = abs(is_now - was) / np.where(size > 0, size, np.inf)
-    alike = parts >= (1 - SAME) * parts.max()
-    number, axis = np.unravel_index(int(np.argmax(alike)), parts.shape)
+    change, held = is_now - was, _held_axes(gaps.problem)[zones]
+    size = np.where(held & (abs(was) >= SMALL_COMPONENT * total[:, None]), abs(was), total[:, None])
+    changed = np.column_stack([np.hypot(*change.T), abs(change)])
+    size = np.column_stack([total, size])
+    parts = changed / np.where(size > 0, size, np.inf)
+    number, axis = np.unravel_index(int(np.argmax(parts >= (1 - SAME) * parts.max())), parts.shape)
     part = float(parts[number, axis])
     if part < noted(gaps.problem):
         return None, ()
@@ -352,23 +356,29 @@ def _forces_changed(
     i = int(np.argmax(both))
     zone, units = contact.zone_names[zones[number]], gaps.problem.units
     motion = _motion_in(moved, within[number], both)
-    gained = _vector(is_now[number] - was[number], units.line_force)
-    whole = float(of_zone[zones[number]])
-    of = (
-        _of_component(part, float(was[number, axis]), float(size[number, axis]))
-        if abs(own[number]) @ solution.pressure >= SMALL_CONTACT * whole
-        else f"{100 * part * size[number, axis] / whole:.2g} % of all force there"
-    )
+    gained, whole = _vector(change[number], units.line_force), float(of_zone[zones[number]])
+    of = f"along {'xy'[axis - 1]} by {100 * part:.2g} %" if axis else f"{100 * part:.2g} % of it"
+    if abs(own[number]) @ solution.pressure < SMALL_CONTACT * whole:
+        of = f"{100 * changed[number, 0] / whole:.2g} % of all force there"
     words = (
         f"{_motion_against(gaps, zone, motion)}, which is not small beside their shapes: with the gaps and the "
         "directions of the surfaces where the body then is, the force between them changes by "
-        f"{gained}, along {'xy'[axis]} by {of}; {_remedy(gaps, motion)}"
+        f"{gained}, {of}; {_remedy(gaps, motion)}"
     )
     if part < WITHHELD:
         return None, (f"{words}; error bars do not include this",)
     words = f"{words[0].upper()}{words[1:]}."
     off = float(abs(moved.change[within[number]]).max())
     return _misfit(gaps, points, contact, i, Misfit.MOVED, off, 0.0, words), ()
+
+
+def _held_axes(problem: Problem) -> BoolArray:
+    """Axes (zones, 2) along which the tool of each zone is held, if it is free along the other one."""
+    held = np.zeros((len(problem.zones), 2), bool)
+    for tool in problem.tools.values():
+        free = np.array(tool.free[:2])
+        held[[[*problem.zones].index(zone) for zone in tool.zones]] = ~free & free.any()
+    return held
 
 
 def _contacts(
@@ -389,11 +399,6 @@ def _contacts(
         zones += [number] * len(found)
         within += found
     return np.array(zones), np.array(within)
-
-
-def _of_component(part: float, component: float, size: float) -> str:
-    """Say a change of a component of a force in per cent: of itself, or of the force if it is small beside that."""
-    return f"{100 * part:.2g} %" if abs(component) >= size else f"{100 * part:.2g} % of the force"
 
 
 def _places_changed(

@@ -479,9 +479,7 @@ def test_a_force_turns_with_the_normal_of_the_place_that_the_body_moves_to(share
     """A roller that moves aside by d presses straight up there; its normals turn by d/R."""
     result = as_drawn(roller_moved_aside(share))
     texts = [*result.notes, *([result.penetration.words] if result.penetration else [])]
-    told = [
-        float(found[1]) / 100 for text in texts if (found := re.search(r"force .* along x by ([\d.e-]+) % of", text))
-    ]
+    told = [float(found[1]) / 100 for text in texts if (found := re.search(r"force .*, ([\d.e-]+) % of it;", text))]
     assert told == ([] if abs(share) < SAID else [pytest.approx(abs(share), abs=0.05 * abs(share) + 0.0005)])
     assert result.certified == (abs(share) < WITHHELD)
 
@@ -520,8 +518,38 @@ def test_the_component_that_a_tool_does_not_prescribe_is_judged_by_itself(away: 
     assert result.certified is certified
     error = abs(result.footprint.forces["roller"][1] + 90)
     texts = [*result.notes, *([result.penetration.words] if result.penetration else [])]
-    told = [float(found[1]) / 100 for text in texts if (found := re.search(r" along y by ([\d.e-]+) %;", text))]
+    told = [float(found[1]) / 100 for text in texts if (found := re.search(r", along y by ([\d.e-]+) %;", text))]
     assert told == ([pytest.approx(error / 90, rel=0.35)] if away > 0.1 else [])
+
+
+@pytest.mark.parametrize("turn", [0.0, 8.7, 61.0, 135.0])
+def test_the_change_of_a_force_is_the_same_in_other_axes(turn: float):
+    """A block that slides under a round tool finds normals turned and gaps grown, and the force changes.
+
+    All is turned by an angle, so that one axis may lie nearly across the force: axes do not matter.
+    """
+    c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+    turned = np.array([[c, s], [-s, c]])
+    bottom, right, top, left, center, (x, y) = (
+        np.array([(-12, -8), (12, -8), (12, 0), (-12, 0), (0, 5), (0.05, 0.02)]) @ turned
+    ).tolist()
+    corners = {"bottom": bottom, "right": right, "top": top, "left": left}
+    result = as_drawn(
+        Problem(
+            name="block that slides under a tool",
+            material={"young_modulus": 1000, "poisson_ratio": 0.3},
+            boundary={"outer": [{"name": name, "start": at} for name, at in corners.items()]},
+            conditions={"bottom": {"displacement": {"x": x, "y": y}}},
+            contact_zones={"tool": {"edges": "top", "surface": {
+                "kind": "circle", "center": center, "radius": 5, "body": "outside"}}},
+            accuracy=0.05,
+        )  # pyright: ignore[reportArgumentType]
+    )  # fmt: skip
+    (x, y, told) = re.findall(r"changes by \(([^,]*), ([^)]*)\), ([\d.e-]+) % of it;", " ".join(result.notes))[0]
+    force = np.hypot(*result.footprint.forces["tool"])
+    change = np.array([float(x), float(y)]) @ turned.T / force  # back in the axes of the block
+    assert change[0] == pytest.approx(0.05 / 5, rel=0.02)  # by the turn of the normals, d/R
+    assert float(told) / 100 == pytest.approx(np.hypot(*change), abs=0.0005)
 
 
 def test_an_infinite_peak_does_not_withhold_the_certificate():
@@ -575,7 +603,7 @@ def test_a_small_force_is_judged_by_itself_and_by_statics():
     assert -followed.contact.resultants(followed.solution.pressure)[2, 0] == pytest.approx(20, abs=500 * bent / 2)
     assert result.penetration is not None
     assert result.penetration.kind is Misfit.MOVED
-    (told,) = re.findall(r"against the surface of 'wall', .* along x by ([\d.e-]+) %;", result.penetration.words)
+    (told,) = re.findall(r"against the surface of 'wall', .*, ([\d.e-]+) % of it;", result.penetration.words)
     wall = -result.contact.resultants(result.solution.pressure)[2, 0]
     assert float(told) / 100 == pytest.approx((20 - wall) / wall, rel=0.05)
 
