@@ -132,15 +132,28 @@ def has_cases(problem: Problem) -> bool:
 
 
 def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:
-    """For each contact of two elastic bodies, where the second one is beside the first, and what that may change."""
-    moved = motions_of_pairs(body, case.condensation.contact, case.solution.pressure, case.displacement)
+    """For each contact of two elastic bodies, where the second one is beside the first, and what that may change.
+
+    A peak is off as of `_ways_of_rigid`, in the mean, and as of `PairMotion.change_of_peak`.
+    """
+    contact, names, (inward, reach) = case.condensation.contact, [*body.problem.zones], body.outline.sides
+    moved = motions_of_pairs(body, contact, case.solution.pressure, case.displacement)
     for name, motion in moved.items():
         surface = _pairs(body.problem)[name]
         step = motion.mean - surface.approach.step
         step[abs(step) <= AS_A_WHOLE * motion.spread] = 0.0
         step[_axes_of_symmetry(body, name)] = 0.0
         x, y = (surface.approach.step + step).tolist()
-        yield name, Way(x, y), motion.change_of_peak(step)
+        force = contact.weights * case.solution.pressure * (contact.zone == names.index(name))
+        at = body.points.node[force > 0]
+        now, there = (
+            item.faces(body.mesh.nodes[at], inward[at], reach[at]) for item in (surface, surface.after(Way(x, y)))
+        )
+        turned = (there.normals - now.normals)[:, 1]
+        off = (there.gap - now.gap)[:, 1] - turned @ motion.mean
+        squares = np.maximum((off / contact.scales.displacement) ** 2, np.sum(turned**2, axis=1))
+        part = float(np.sqrt(np.average(squares, weights=force[force > 0]))) / 2
+        yield name, Way(x, y), max(part, motion.change_of_peak(step))
 
 
 def _ways_of_rigid(case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:

@@ -294,3 +294,29 @@ def test_a_tool_rolls_on_a_dome_to_where_the_force_passes_through_its_point(kind
     ends = [end[0] for end in (result.intervals[0].start, result.intervals[0].end)]
     assert sum(ends) / 2 == pytest.approx(at, abs=0.01)
     assert result.forces["top"] == pytest.approx((-10 * at / radius, -10), abs=0.025)
+
+
+def nose_on_a_block(slide: float, sides: list[str], *, drawn: float = 0.0) -> bemcontact.Result:
+    """A round nose of radius 2 that is pressed on a block by 0.05, and slides along it."""
+    nose = [
+        {"name": "round", "kind": "arc", "center": [drawn, 2], "start": [drawn - 1.2, 0.4], "end": [drawn + 1.2, 0.4]},
+        {"name": "right", "end": [drawn + 1.2, 4]},
+        {"name": "top", "end": [drawn - 1.2, 4]},
+        {"name": "left"},
+    ]
+    bodies = {
+        "nose": elastic({"outer": nose}, {"top": {"displacement": {"x": slide, "y": -0.05}}}),
+        "block": elastic(block((-7, 7), (-3, 0)), {"bottom": {"fixed": True}}),
+    }
+    return bemcontact.solve(problem(bodies, 0.03, c=sides))
+
+
+@pytest.mark.parametrize("sides", [["nose/round", "block/top"], ["block/top", "nose/round"]])
+def test_a_nose_that_slides_along_a_flat_block_presses_straight_down(sides: list[str]):
+    """As if it were drawn there, whichever side is the first: normals of pairs turn as a round second side slides."""
+    slid, there = nose_on_a_block(0.1, sides), nose_on_a_block(0.0, sides, drawn=0.1)
+    for result in (slid, there):
+        assert result.holds
+        assert abs(result.forces["c"][0]) < 0.0025 * abs(result.forces["c"][1])
+    bars = sum(bar.bar or 0.0 for result in (slid, there) for bar in result.accuracy.bars if bar.quantity == "force")
+    assert slid.forces["c"][1] == pytest.approx(there.forces["c"][1], rel=bars)
