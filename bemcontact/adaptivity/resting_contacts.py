@@ -144,15 +144,16 @@ def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Way, flo
         step[abs(step) <= AS_A_WHOLE * motion.spread] = 0.0
         step[_axes_of_symmetry(body, name)] = 0.0
         x, y = (surface.approach.step + step).tolist()
-        force = contact.weights * case.solution.pressure * (contact.zone == names.index(name))
+        part, force = 0.0, abs(contact.weights_by_zone[names.index(name)] * case.solution.pressure)
         at = body.points.node[force > 0]
-        now, there = (
-            item.faces(body.mesh.nodes[at], inward[at], reach[at]) for item in (surface, surface.after(Way(x, y)))
-        )
-        turned = (there.normals - now.normals)[:, 1]
-        off = (there.gap - now.gap)[:, 1] - turned @ motion.mean
-        squares = np.maximum((off / contact.scales.displacement) ** 2, np.sum(turned**2, axis=1))
-        part = float(np.sqrt(np.average(squares, weights=force[force > 0]))) / 2
+        if len(at):  # else other contacts with which it moves press alone
+            now, there = (
+                item.faces(body.mesh.nodes[at], inward[at], reach[at]) for item in (surface, surface.after(Way(x, y)))
+            )
+            turned = (there.normals - now.normals)[:, 1]
+            off = (there.gap - now.gap)[:, 1] - turned @ motion.mean
+            squares = np.maximum((off / contact.scales.displacement) ** 2, np.sum(turned**2, axis=1))
+            part = float(np.sqrt(np.average(squares, weights=force[force > 0]))) / 2
         yield name, Way(x, y), max(part, motion.change_of_peak(step))
 
 

@@ -320,3 +320,35 @@ def test_a_nose_that_slides_along_a_flat_block_presses_straight_down(sides: list
         assert abs(result.forces["c"][0]) < 0.0025 * abs(result.forces["c"][1])
     bars = sum(bar.bar or 0.0 for result in (slid, there) for bar in result.accuracy.bars if bar.quantity == "force")
     assert slid.forces["c"][1] == pytest.approx(there.forces["c"][1], rel=bars)
+
+
+def test_contacts_that_move_together_may_press_alone():
+    """A nose of two edges, each with a contact, slides along a block: as drawn one of them presses, then both alike."""
+    low = {"bottom": (-10, -8), "right": (10, -8), "top": (10, 0), "left": (-10, 0)}
+
+    def nose(x: float) -> bemcontact.Result:
+        quarter = {"kind": "arc", "center": (x, 5)}
+        bodies = {
+            "low": {
+                "material": {"young_modulus": 2000, "poisson_ratio": 0.3},
+                "boundary": {"outer": [{"name": name, "start": at} for name, at in low.items()]},
+                "conditions": {"bottom": {"fixed": True}},
+            },
+            "up": {
+                "material": {"young_modulus": 2000, "poisson_ratio": 0.3},
+                "boundary": {"outer": [
+                    {"name": "right nose", **quarter, "start": (x, 0), "end": (x + 5, 5)},
+                    {"name": "top", "end": (x - 5, 5)},
+                    {"name": "left nose", **quarter, "end": (x, 0)},
+                ]},
+                "conditions": {"top": {"displacement": {"x": -x, "y": -0.02}}},
+            },
+        }  # fmt: skip
+        contacts = {side: {"between": [f"up/{side} nose", "low/top"]} for side in ("right", "left")}
+        spec = {"name": "nose", "bodies": bodies, "contacts": contacts, "accuracy": 0.05}
+        return bemcontact.solve(bemcontact.problem(spec))
+
+    slid, there = nose(-1.0), nose(0.0)
+    assert slid.holds
+    assert slid.forces["right"][1] == pytest.approx(slid.forces["left"][1], rel=0.005)
+    assert slid.forces["right"] == pytest.approx(there.forces["right"], abs=0.03)
