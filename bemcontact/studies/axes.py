@@ -28,6 +28,7 @@ _RANGE = re.compile(r"\s*([^:\s{}]+)\s*:\s*([^:\s{}]+)\s*:\s*([^:\s{}]+)\s*")
 _IN_UNITS = r"\s*([-+.\deE]+)\s*([^-+.\d:\s][^:]*?)\s*:"
 _RANGE_IN_UNITS = re.compile(2 * _IN_UNITS + r"\s*(\d+)\s*")
 _PART_OF_RANGE = re.compile(r"\s*[-+.\d][-+.\deE]*(\s*:\s*[-+.\deE]*)+")
+_OTHER_LIST = re.compile(r"\s*(\{[^:]*\}|[-+\d][-+.\deE]*\.\.[-+.\deE]+)\s*")
 _OPENING, _CLOSING, _QUOTES = "[{(", "]})", "\"'"
 
 
@@ -177,7 +178,7 @@ def written_axis(text: str) -> tuple[str, list[Any]]:
         if unit != other:
             raise OptionError(f"{keys}: both ends of a range need one unit; found {unit} and {other}")
         return keys, [f"{value!r} {unit}" for value in _range(keys, first, last, count)]
-    if _PART_OF_RANGE.fullmatch(written):
+    if _PART_OF_RANGE.fullmatch(written) or _OTHER_LIST.fullmatch(written):
         raise OptionError(f"{keys}: expected a:b:n for n values from a to b, or v1,v2,v3; found {written.strip()}")
     try:
         return keys, [written_value(item, keys) for item in _items(written)]

@@ -44,7 +44,8 @@ def test_written_axes_are_read(text: str, keys: str, values: list[Any]):
         ("a=1:1:4", "two different"),
         ("a=1:inf:4", "finite"),
         ("a=[1", "bracket"),
-        ("a={-1,-2}", "a key must be a text, found '-1'; write it in quotes"),
+        ("a={-1,-2}", "expected a:b:n for n values from a to b, or v1,v2,v3; found {-1,-2}"),
+        ("a=1..2", "expected a:b:n"),
         ("a=1 GPa:2 MPa:2", "both ends of a range need one unit; found GPa and MPa"),
     ],
 )
