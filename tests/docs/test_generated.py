@@ -51,6 +51,14 @@ def test_each_public_name_has_a_place():
     assert {"load", "solve", "Result", "SpecError"} <= {*names}
 
 
+@pytest.mark.slow
+def test_what_functions_and_methods_give_is_documented():
+    """`solve_lcp` is a function, `ContactModel.solve` a method; JSON forms have pages of their own."""
+    documented = re.findall(r"autoclass:: bemcontact\.\S*?(\w+)$", generated.parts(), flags=re.MULTILINE)
+    assert {"LcpResult", "ModelResult", "Footprint", "Accuracy"} <= {*documented}
+    assert not {"ResultRecord", "CasesRecord", "Problem"} & {*documented}
+
+
 def test_a_part_that_does_not_exist_is_an_error():
     with pytest.raises(KeyError, match="nothing"):
         generated.fill(None, "page", ["<!-- generated: nothing -->"])  # pyright: ignore[reportArgumentType]
