@@ -125,7 +125,7 @@ def _object(
     """Describe one object: what it is, where it stands, and its keys."""
     lines = [f"({key})=", f"{'#' * level} {title}", "", _escaped(node.get("description", "")), ""]
     if where:
-        lines += ["Stands at " + ", ".join(f"`{place}`" for place in where) + ".", ""]
+        lines += ["Stands at " + ", ".join(f"`{place}`" for place in dict.fromkeys(where)) + ".", ""]
     for name, value in node["properties"].items():
         about = [_value(value, schema, prefix)]
         if "default" in value and value["default"] not in (None, "", [], {}) and not isinstance(value["default"], dict):

@@ -26,6 +26,13 @@ def test_each_key_of_a_problem_file_is_shown():
     assert shown(generated.spec()) == keys(bemcontact.schema())
 
 
+def test_no_place_of_an_object_is_listed_twice():
+    """Edges of each kind have a grading, all at one place."""
+    places = re.findall(r"^Stands at (.*)\.$", generated.spec(), flags=re.MULTILINE)
+    assert "`boundary.outer[].grading`" in places
+    assert all(len(each.split(", ")) == len({*each.split(", ")}) for each in places)
+
+
 def test_each_key_of_each_json_file_is_shown():
     """The command schema has an option for each file of results."""
     text = generated.json_files()
