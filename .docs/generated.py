@@ -22,10 +22,15 @@ from typer.testing import CliRunner
 
 import bemcontact
 from bemcontact import cli
+from bemcontact.problems.validation import INTERNAL, SpecModel
 
 ROOT = Path(__file__).parents[1]
 MARK = re.compile(r"^<!-- generated: (\w+)(.*) -->$", flags=re.MULTILINE)
 COMMANDS = typer.main.get_command(cli.app)
+FOREIGN = "BaseModel, tuple, object"
+"""Classes of other packages whose members are not those of ours."""
+INNER = "__init__, model_config, model_post_init"
+"""Members of classes that no reader needs."""
 
 
 def commands() -> str:
@@ -263,7 +268,8 @@ def _documented(path: str, value: object) -> str:
     elif issubclass(value, enum.Enum):
         directive, options = "autoclass", [":members:", ":undoc-members:"]
     else:
-        directive, options = "autoclass", [":members:", ":exclude-members: __init__, model_config, model_post_init"]
+        hidden = ", ".join([INNER, *(INTERNAL + value.inside if issubclass(value, SpecModel) else ())])
+        directive, options = "autoclass", [":members:", f":inherited-members: {FOREIGN}", f":exclude-members: {hidden}"]
     return "\n   ".join([f"```{{eval-rst}}\n.. {directive}:: {path}", *options]) + "\n```\n"
 
 
