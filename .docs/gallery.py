@@ -49,7 +49,7 @@ HEAD = """\
 
 <!-- Written by `python .docs/gallery.py`. -->
 
-Each file here states one problem with a known answer. This command solves one and draws it:
+Each file here states one problem, mostly with a known answer. This command solves one and draws it:
 
 ```sh
 bemcontact solve models/cylinder_on_plane.yaml --figure contact.svg

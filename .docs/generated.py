@@ -7,7 +7,7 @@ import enum
 import inspect
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, get_args
 
@@ -22,10 +22,15 @@ from typer.testing import CliRunner
 
 import bemcontact
 from bemcontact import cli
+from bemcontact.problems.validation import INTERNAL, SpecModel
 
 ROOT = Path(__file__).parents[1]
 MARK = re.compile(r"^<!-- generated: (\w+)(.*) -->$", flags=re.MULTILINE)
 COMMANDS = typer.main.get_command(cli.app)
+FOREIGN = "BaseModel, tuple, object"
+"""Classes of other packages whose members are not those of ours."""
+INNER = "__init__, model_config, model_post_init"
+"""Members of classes that no reader needs."""
 
 
 def commands() -> str:
@@ -125,7 +130,7 @@ def _object(
     """Describe one object: what it is, where it stands, and its keys."""
     lines = [f"({key})=", f"{'#' * level} {title}", "", _escaped(node.get("description", "")), ""]
     if where:
-        lines += ["Stands at " + ", ".join(f"`{place}`" for place in where) + ".", ""]
+        lines += ["Stands at " + ", ".join(f"`{place}`" for place in dict.fromkeys(where)) + ".", ""]
     for name, value in node["properties"].items():
         about = [_value(value, schema, prefix)]
         if "default" in value and value["default"] not in (None, "", [], {}) and not isinstance(value["default"], dict):
@@ -214,9 +219,9 @@ def names(words: str) -> str:
 
 
 def parts() -> str:
-    """Document the objects that public ones hold, and those that these hold in turn, by name."""
+    """Document the objects that public ones hold or give, and those that these hold in turn, by name."""
     known = [getattr(bemcontact, name) for name in bemcontact.__all__]
-    queue = [value for value in known if isinstance(value, type) and not issubclass(value, BaseModel)]
+    queue = [value for value in known if inspect.isroutine(value) or _is_class(value)]
     held: list[type] = []
     while queue:
         for part in _held(queue.pop(0)):
@@ -227,12 +232,26 @@ def parts() -> str:
     return "\n".join(_documented(f"{part.__module__}.{part.__name__}", part) for part in held)
 
 
-def _held(value: type) -> Iterator[type]:
-    """Find the classes in the types of fields and properties of a class."""
+def _is_class(value: object) -> bool:
+    """Whether this is a class that the reference of keys does not describe."""
+    return isinstance(value, type) and not issubclass(value, BaseModel)
+
+
+def _held(value: type | Callable[..., Any]) -> Iterator[type]:
+    """Find the classes in the types of fields and properties of a class, and in what it or a function gives."""
+    if not isinstance(value, type):
+        yield from filter(_is_class, _classes([inspect.get_annotations(value).get("return")]))
+        return
     public = {name: item for name, item in vars(value).items() if not name.startswith("_")}
     getters = [getattr(item, "fget", getattr(item, "func", None)) for item in public.values()]
     hints = [*inspect.get_annotations(value).values()]
-    hints += [inspect.get_annotations(getter).get("return") for getter in getters if getter]
+    yield from _classes(hints + [inspect.get_annotations(getter).get("return") for getter in getters if getter])
+    for method in filter(inspect.isfunction, public.values()):
+        yield from _held(method)
+
+
+def _classes(hints: list[Any]) -> Iterator[type]:
+    """Find the classes in types."""
     while hints:
         hint = hints.pop(0)
         hints.extend(get_args(hint))
@@ -249,7 +268,8 @@ def _documented(path: str, value: object) -> str:
     elif issubclass(value, enum.Enum):
         directive, options = "autoclass", [":members:", ":undoc-members:"]
     else:
-        directive, options = "autoclass", [":members:", ":exclude-members: __init__, model_config, model_post_init"]
+        hidden = ", ".join([INNER, *(INTERNAL + value.inside if issubclass(value, SpecModel) else ())])
+        directive, options = "autoclass", [":members:", f":inherited-members: {FOREIGN}", f":exclude-members: {hidden}"]
     return "\n   ".join([f"```{{eval-rst}}\n.. {directive}:: {path}", *options]) + "\n```\n"
 
 

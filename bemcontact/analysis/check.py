@@ -35,7 +35,9 @@ class CheckedProblem:
     smallest_gaps: dict[str, float]
     """Smallest initial gap of each contact zone, on the curves of its edges [L]."""
     free_motions: int
-    """Number of rigid motions of the body that the conditions leave free."""
+    """Number of rigid motions of all bodies that the conditions leave free."""
+    held_by_bonds: int
+    """Number of these that would move bonded bodies apart."""
     held_by_contact: tuple[str, ...]
     """Descriptions of the free motions of body and tools that contact holds."""
     total_load: tuple[float, float]
@@ -59,6 +61,7 @@ def check(problem: Problem) -> CheckedProblem:
         gaps={name: body.points.gap[body.points.zone == i] for i, name in enumerate(body.problem.zones)},
         smallest_gaps=smallest,
         free_motions=sum(map(len, body.motions)),
+        held_by_bonds=len(body.apart) - len(body.spins),
         held_by_contact=tuple(body.seen.describe()),
         total_load=(float(x), float(y)),
         load_magnitude=float(body.pinned.total(body.factors, body.forces)),

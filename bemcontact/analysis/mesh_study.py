@@ -44,13 +44,13 @@ class LevelRecord(Record):
     """The comparison on one mesh; JSON has what belongs to the direct solution beside it."""
 
     refine: int
-    """Number of parts into which each stated element is cut."""
+    """Number of parts into which each element is cut."""
     dof: int | None
     """Number of unknowns of the boundary elements, two for each node; null for a condensed problem."""
     seconds: dict[str, float]
     """Time of each stage."""
     notes: tuple[str, ...]
-    """Remarks on the answer and its mesh."""
+    """Notes on the answer and its mesh."""
     sides: dict[str, tuple[str, str]]
     """The bodies of each contact, first the one on which its force acts; the second is '' for a rigid surface. Empty
     if an only body touches rigid surfaces."""
@@ -105,7 +105,7 @@ class MeshLevel:
     """A problem on one mesh."""
 
     refine: int
-    """Number of parts into which each stated element is cut."""
+    """Number of parts into which each element is cut."""
     comparison: Comparison
     """The formulations side by side."""
     answer: Result

@@ -51,7 +51,7 @@ def misfit(
     if deepest is None and beyond is None and not noticed:  # what strains change that are noted is not told twice
         beyond, noticed = second_order(body, gaps.state, contact.initial_gap)
     if deepest is not None and beyond is not None:
-        if deepest.kind is Misfit.ITSELF or beyond.depth > 1:
+        if deepest.kind in (Misfit.ITSELF, Misfit.EACH_OTHER) or beyond.depth > 1:
             deepest, beyond = beyond, deepest
         return deepest, (*notes, beyond.as_note)
     return deepest or beyond, (*notes, *(item.words for item in noticed))
@@ -135,7 +135,7 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
     of = [gaps.problem.part_of(edge) for edge in edges]
     if of[0] != of[1]:
         return Penetration(
-            kind=Misfit.ITSELF, depth=float(np.hypot(*(first - second))), allowed=0.0, at=(x, y), edge=edges[0],
+            kind=Misfit.EACH_OTHER, depth=float(np.hypot(*(first - second))), allowed=0.0, at=(x, y), edge=edges[0],
             zone="", paired=False,
             words=(
                 f"The bodies '{of[0]}' and '{of[1]}' penetrate each other at ({x:.5g}, {y:.5g}), where '{edges[0]}' "
@@ -174,7 +174,7 @@ def _swallowed(
                 x, y = drawn[i][0].tolist()
                 edge = gaps.outline.mesh.edge_names[gaps.outline.mesh.edge[loops[i][0]]]
                 return Penetration(
-                    kind=Misfit.ITSELF, depth=float(np.hypot(*(moved[i][0] - drawn[i][0]))), allowed=0.0, at=(x, y),
+                    kind=Misfit.EACH_OTHER, depth=float(np.hypot(*(moved[i][0] - drawn[i][0]))), allowed=0.0, at=(x, y),
                     edge=edge, zone="", paired=False,
                     words=(
                         f"The body '{name}' lies inside '{other}' after the motion. No contact between them is stated; "

@@ -102,7 +102,7 @@ class ReproductionRecord(Record):
     reproduced: bool
     """Whether all solutions are certified and agree with every reference in its range."""
     refine: tuple[int, ...]
-    """Number of parts into which each stated element is cut, on each mesh of a problem as stated."""
+    """Number of parts into which each element is cut, on each mesh of a problem as stated."""
     problems: list[PaperRecord]
     """Problems in the order of the paper."""
     versions: dict[str, str]

@@ -103,7 +103,7 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     certificate: Certificate
     """Certificate of the solution."""
     penetration: Penetration | None
-    """Where the deformed boundary does not fit a rigid surface, or strains are not small; null if neither, or for a
+    """Where the deformed boundary does not fit a surface or a body, or strains are not small; null if neither, or for a
     condensed problem, whose boundary was not looked at."""
     boundary: BoundaryRecord | None
     """State of the whole boundary; null for a condensed problem."""
@@ -135,7 +135,7 @@ class Result(Recorded, Tabular):
     footprint: Footprint
     """Contact intervals, peak pressure and resultant; no peak where it is infinite."""
     penetration: Penetration | None
-    """Where the deformed boundary does not fit a rigid surface, or strains are not small; None if neither, or for a
+    """Where the deformed boundary does not fit a surface or a body, or strains are not small; None if neither, or for a
     condensed problem, whose boundary was not looked at."""
     boundary: BoundaryState | None
     """Displacement and traction of the whole boundary; None for a condensed problem."""

@@ -184,6 +184,10 @@ def solve(
         If the problem has no answer.
     NotConvexError
         If the formulation needs a convex program and this is none.
+    SingularSystemError
+        If the equations of a body have no unique solution.
+    SolverError
+        If the solver of QP3 breaks down, and leaves no point.
     """
     ensure_callable(progress, "progress")
     read, asking = read_options(formulation, weights, options)

@@ -69,7 +69,10 @@ class ErrorBar(Leaf):
     @computed_field
     @property
     def promised(self) -> bool:
-        """Whether the accuracy asked for applies to it: not to `TOLD`, nor where there is nothing to estimate."""
+        """Whether the accuracy asked for applies to it: not to lengths, intensities, motions and rotations.
+
+        Nor does it where there is nothing to estimate.
+        """
         nothing = self.value is None or (self.quantity == "force" and self.value == 0)
         return self.quantity not in TOLD and not (self.bar is None and nothing)
 
@@ -89,7 +92,7 @@ class Accuracy(Leaf):
     asked: float | None
     """Relative accuracy asked for; null if none is."""
     met: bool | None = None
-    """Whether all error bars are below it but those of intensities and motions; null if errors were not estimated."""
+    """Whether all error bars are below it to which it applies, `promised`; null if errors were not estimated."""
     passes: int = 0
     """Number of meshes whose errors were estimated; 1 for a mesh that was stated."""
     bars: tuple[ErrorBar, ...] = ()

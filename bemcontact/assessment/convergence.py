@@ -40,7 +40,7 @@ class Convergence(Leaf):
     """Change of the solution with the mesh."""
 
     refine: tuple[int, ...]
-    """Number of parts into which each stated element is cut, on each mesh."""
+    """Number of parts into which each element is cut, on each mesh."""
     quantities: tuple[Quantity, ...]
     """Peak pressure, ends of contact, and asymmetry of J M."""
     remark: str

@@ -1,6 +1,6 @@
 """Why the solution of the equations is not that of contact: what is tolerated, and what is said.
 
-The deformed boundary may penetrate a rigid surface or itself anywhere, or displacements are not small.
+The deformed boundary may penetrate a rigid surface, itself or another body anywhere, or displacements are not small.
 """
 
 from dataclasses import dataclass
@@ -20,6 +20,7 @@ class Misfit(StrEnum):
 
     PENETRATION = "penetrates a surface"
     ITSELF = "penetrates itself"
+    EACH_OTHER = "penetrates another body"
     OFF = "pressure off the surface"
     MOVED = "large motion"
     NOT_SMALL = "outside linear theory"
@@ -34,22 +35,22 @@ class Misfit(StrEnum):
 class Penetration(Leaf):
     """Where the deformed boundary does not fit a rigid surface, beyond what the discretization explains.
 
-    It penetrates the surface or itself, or pressure acts where the displacements take the body off the surface, or the
-    displacements change the gap so much that the pressure is wrong. Or displacements are not small, so that linear
-    theory does not hold.
+    It penetrates the surface, itself or another body, or pressure acts where the displacements take the body off the
+    surface, or the displacements change the gap so much that the pressure is wrong. Or displacements are not small, so
+    that linear theory does not hold.
     """
 
     kind: Misfit = Misfit.PENETRATION
-    """What is wrong, in the words of the verdict: a penetration of a surface or of the body itself, pressure off the
-    surface, a large motion, or displacements that are not small."""
+    """What is wrong, in the words of the verdict: a penetration of a surface, of the body itself or of another body,
+    pressure off the surface, a large motion, or displacements that are not small."""
     depth: float
     """Depth of the penetration, distance from the surface, or largest change of the gap by the motion [L]; of a body
-    that penetrates itself the distance of the two places before they met [L]; outside linear theory the largest
-    strain, change of the displacement over the length, error of a slender part, or load over the critical one, a
-    number."""
+    that penetrates itself or another one the distance of the two places before they met [L]; outside linear theory the
+    largest strain, change of the displacement over the length, error of a slender part, or load over the critical one,
+    a number."""
     allowed: float
     """Depth or distance that is tolerated: a hundredth of the displacement; zero of a large motion, and of a body that
-    penetrates itself [L]. Outside linear theory the least number that is not small."""
+    penetrates itself or another one [L]. Outside linear theory the least number that is not small."""
     at: Pair
     """Undeformed place (x, y) [L]."""
     edge: str

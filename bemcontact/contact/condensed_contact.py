@@ -49,7 +49,8 @@ class CondensedContact(WithHints, MotionAlgebra):
     Parameters
     ----------
     points : (n, 2) undeformed positions [L]
-    normals : (n, 2) unit normals of the rigid surface, from the surface into the body
+    normals : (n, 2) unit normals of the rigid surface, from the surface into the body; of two elastic bodies the common
+        ones, into the first body
     zone : (n,) index into `zone_names`
     run : (n,) number of the unbroken piece of boundary that the point belongs to
     arc_position : (n,) arc length along that piece [L]

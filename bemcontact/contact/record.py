@@ -39,7 +39,7 @@ class ContactRecord(Record):
     nodes: Pairs
     """Undeformed place (x, y) [L]."""
     normals: Pairs
-    """Unit normal of the rigid surface, into the body."""
+    """Unit normal of the rigid surface, into the body; of two elastic bodies the common one, into the first body."""
     zone: list[str]
     """Name of the contact zone."""
     run: list[int]
@@ -49,7 +49,8 @@ class ContactRecord(Record):
     tributary_lengths: Vector
     """Length that belongs to the point [L]: Σ length · pressure · normal is the resultant."""
     initial_gap: Vector
-    """Distance from the rigid surface along its normal before anything deforms; negative if inside [L]."""
+    """Distance from the rigid surface, or the other body, along the normal before anything deforms; negative if inside
+    [L]."""
     load_factors: dict[str, float]
     """Factor of each load case; empty if there are none."""
     scales: ScalesRecord

@@ -22,7 +22,7 @@ OF_RIGHT, UNDECIDED = 1e-6, 1e-10
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LcpResult:
-    """Result of `solve_lcp`; z and w are a solution only with `Status.SOLVED`.
+    """Result of `solve_lcp`; z and w are a solution only with `bemcontact.Status.SOLVED`.
 
     Parameters
     ----------

@@ -101,7 +101,7 @@ class Sensitivities(Leaf):
     weak: tuple[int, ...]
     """Indices of the points that are about to enter or leave contact: no pressure and no gap."""
     notes: tuple[str, ...]
-    """Remarks on the contact state."""
+    """Notes on the contact state."""
     accuracy: Accuracy = NO_MESH
     """Accuracy of the mesh in the contact state: error bars of the peak, of forces, and of the ends that move. The
     derivatives themselves have none."""

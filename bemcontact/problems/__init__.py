@@ -9,6 +9,7 @@ from bemcontact.problems.boundary import Boundary as Boundary
 from bemcontact.problems.conditions import AxisFields as AxisFields
 from bemcontact.problems.conditions import Centrifugal as Centrifugal
 from bemcontact.problems.conditions import Condition as Condition
+from bemcontact.problems.conditions import EdgeForce as EdgeForce
 from bemcontact.problems.conditions import Field as Field
 from bemcontact.problems.conditions import Gravity as Gravity
 from bemcontact.problems.conditions import Loads as Loads
@@ -22,8 +23,10 @@ from bemcontact.problems.contact_zone import ToolForce as ToolForce
 from bemcontact.problems.curves import Edge as Edge
 from bemcontact.problems.geometry import Arc as Arc
 from bemcontact.problems.geometry import EllipseArc as EllipseArc
+from bemcontact.problems.geometry import Fillet as Fillet
 from bemcontact.problems.geometry import Grading as Grading
 from bemcontact.problems.geometry import Line as Line
+from bemcontact.problems.geometry import Mirror as Mirror
 from bemcontact.problems.geometry import SplineEdge as SplineEdge
 from bemcontact.problems.load_case import LoadCase as LoadCase
 from bemcontact.problems.material import Material as Material

@@ -137,7 +137,7 @@ class Line(_EdgeBase):
     example: ClassVar[str] = "{name: bottom, start: [0, 0]}"
 
     kind: Literal["line"] = "line"
-    """The shape of the edge: line, arc, or ellipse."""
+    """The shape of the edge: line, arc, ellipse, or spline."""
     start: Point | None = None
     """The first point [x, y]; if left out, the end of the previous edge."""
     end: Point | None = None
@@ -173,7 +173,7 @@ class Arc(_EdgeBase):
     example: ClassVar[str] = "{name: rim, kind: arc, center: [0, 5], radius: 5, angles: [-90, 0]}"
 
     kind: Literal["arc"] = "arc"
-    """The shape of the edge: line, arc, or ellipse."""
+    """The shape of the edge: line, arc, ellipse, or spline."""
     center: Point = left_out()
     """The center [x, y]."""
     radius: Positive | None = None
@@ -259,7 +259,7 @@ class EllipseArc(_EdgeBase):
     example: ClassVar[str] = "{name: rim, kind: ellipse, center: [0, 5], semi_axes: [8, 5], angles: [-90, 0]}"
 
     kind: Literal["ellipse"] = "ellipse"
-    """The shape of the edge: line, arc, or ellipse."""
+    """The shape of the edge: line, arc, ellipse, or spline."""
     center: Point
     """The center [x, y]."""
     semi_axes: PositivePair
@@ -305,7 +305,7 @@ class SplineEdge(_EdgeBase):
     example: ClassVar[str] = "{name: profile, kind: spline, points: [[0, 0], [5, 1], [10, 0]]}"
 
     kind: Literal["spline"] = "spline"
-    """The shape of the edge: spline."""
+    """The shape of the edge: line, arc, ellipse, or spline."""
     points: Annotated[tuple[Point, ...], Field(min_length=3, max_length=MOST_POINTS)]
     """The points [x, y] in order, with both ends; if the last is the first, the edge is a whole loop."""
     start_direction: Point | None = None

@@ -11,6 +11,7 @@ from bemcontact.report.formatting import (
     deflected_by,
     materials_in_words,
     number,
+    plural,
     prescribed,
     reference_in_words,
     surface_in_words,
@@ -46,8 +47,10 @@ def problem_summary(checked: CheckedProblem) -> RenderableType:
     total = vector(checked.total_load, units.line_force, scale=checked.load_magnitude)
     without = " and tools" if problem.tools else ""
     add(shown, "Total load", f"{total}, without reactions{without}")
-    held = {0: "all rigid motions", 3: "no rigid motion"}
+    held = {0: "all rigid motions", 3 * len(problem.parts): "no rigid motion"}
     add(shown, "Held by conditions", held.get(checked.free_motions, "all rigid motions except those below"))
+    if bonded := checked.held_by_bonds:
+        add(shown, "Held by bonds", f"{bonded} {plural('rigid motion', bonded)} of bonded bodies")
     for motion in checked.held_by_contact:
         add(shown, "Held by contact", motion)
     for name, case in problem.load_cases.items():

@@ -562,3 +562,34 @@ def test_a_thin_hole_that_turns_inside_out_is_found(share, thin):
     kind = None if result.penetration is None else result.penetration.kind
     assert kind is (Misfit.ITSELF if share > 1 else None)
     assert result.certified is (share < 1)
+
+
+@pytest.mark.parametrize(("travel", "start"), [(0.008, 0.0), (0.02, 0.0), (0.02, -20.0)])
+def test_a_body_that_passes_into_another_one_without_a_contact_is_found(travel: float, start: float):
+    """A block is moved by a known way along its floor, towards a post 0.01 beside it or far before it."""
+    corners = {"bottom": (start, 0), "right": (start + 10, 0), "top": (start + 10, 10), "left": (start, 10)}
+    post = {"bottom": (10.01, 2), "right": (20, 2), "top": (20, 8), "left": (10.01, 8)}
+    problem = Problem(
+        name="block and post", materials={"steel": {"young_modulus": 210e3, "poisson_ratio": 0.3}},
+        bodies={
+            "block": {
+                "material": "steel",
+                "boundary": {"outer": [{"name": name, "start": at} for name, at in corners.items()]},
+                "conditions": {"left": {"displacement": {"x": travel}}, "top": {"pressure": 10}},
+            },
+            "post": {
+                "material": "steel", "boundary": {"outer": [{"name": name, "start": at} for name, at in post.items()]},
+                "conditions": {"right": {"fixed": True}},
+            },
+        },
+        contact_zones={"floor": {"edges": "block/bottom", "surface": {
+            "kind": "plane", "point": (0, 0), "normal": (0, 1)}}},
+    )  # pyright: ignore  # fmt: skip
+    result = solve(problem)
+    if travel < 0.01 or start < 0:
+        assert result.certified
+        return
+    assert result.penetration.kind is Misfit.EACH_OTHER
+    assert not result.certified
+    for word in ("'block'", "'post'", "No contact between them is stated"):
+        assert word in result.penetration.words

@@ -26,6 +26,13 @@ def test_each_key_of_a_problem_file_is_shown():
     assert shown(generated.spec()) == keys(bemcontact.schema())
 
 
+def test_no_place_of_an_object_is_listed_twice():
+    """Edges of each kind have a grading, all at one place."""
+    places = re.findall(r"^Stands at (.*)\.$", generated.spec(), flags=re.MULTILINE)
+    assert "`boundary.outer[].grading`" in places
+    assert all(len(each.split(", ")) == len({*each.split(", ")}) for each in places)
+
+
 def test_each_key_of_each_json_file_is_shown():
     """The command schema has an option for each file of results."""
     text = generated.json_files()
@@ -49,6 +56,14 @@ def test_each_public_name_has_a_place():
     names = " ".join(words for what, words in generated.MARK.findall(page) if what == "names").split()
     assert sorted(names) == sorted(generated.public())
     assert {"load", "solve", "Result", "SpecError"} <= {*names}
+
+
+@pytest.mark.slow
+def test_what_functions_and_methods_give_is_documented():
+    """`solve_lcp` is a function, `ContactModel.solve` a method; JSON forms have pages of their own."""
+    documented = re.findall(r"autoclass:: bemcontact\.\S*?(\w+)$", generated.parts(), flags=re.MULTILINE)
+    assert {"LcpResult", "ModelResult", "Footprint", "Accuracy"} <= {*documented}
+    assert not {"ResultRecord", "CasesRecord", "Problem"} & {*documented}
 
 
 def test_a_part_that_does_not_exist_is_an_error():

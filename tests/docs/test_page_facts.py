@@ -10,6 +10,8 @@ import yaml
 from test_architecture import FOUNDATION, PACKAGE, ROOMS
 
 import bemcontact
+from bemcontact.assessment.certificate import HEADINGS, POSITION_OPEN_HEADING, WITHIN_BOUND_HEADING
+from bemcontact.assessment.penetration import Misfit
 
 
 def problem_of(page: str, file: str = "") -> bemcontact.Problem:
@@ -94,6 +96,13 @@ def test_the_page_on_messages_has_a_row_for_each_status():
     text = Path(pages.DOCS, "how-to", "messages.md").read_text(encoding="utf-8").partition("## Statuses")[2]
     rows = re.findall(r"^\| `?(.+?)`? \|", text.partition("## Notes")[0], flags=re.MULTILINE)[1:]
     assert len(rows) == len(bemcontact.Status)
+
+
+def test_the_page_on_messages_has_a_row_for_each_verdict():
+    """What is proved of the equations, and why a solution of them is no answer."""
+    text = Path(pages.DOCS, "how-to", "messages.md").read_text(encoding="utf-8").partition("## Statuses")[0]
+    rows = set(re.findall(r"^\| `([^`]+)`", text, flags=re.MULTILINE))
+    assert {*HEADINGS.values(), POSITION_OPEN_HEADING, WITHIN_BOUND_HEADING, *map(str, Misfit)} <= rows
 
 
 ARCHITECTURE = (pages.DOCS / "explanation/architecture.md").read_text(encoding="utf-8")

@@ -47,6 +47,15 @@ def test_each_page_is_built(site: Path):
     assert {p.relative_to(pages.DOCS).with_suffix("") for p in pages.pages() if p.is_relative_to(pages.DOCS)} <= built
 
 
+def test_the_reference_has_what_classes_inherit(site: Path):
+    """Pictures, tables and JSON are those of base classes; what the package alone uses is left out."""
+    page = (site / "reference" / "python.html").read_text(encoding="utf-8")
+    shown = {*re.findall(r'id="bemcontact\.([\w.]+)"', page)}
+    assert {"Result.plot", "Result.to_frame", "Result.to_json", "Study.table", "CondensedContact.equilibrium"} <= shown
+    assert {"Problem.with_value", "Problem.plot", "Problem.contact_zones", "LargestStresses.inside"} <= shown
+    assert not {"Problem.without_joints", "Problem.as_spec", "Problem.model_dump", "Result.count"} & shown
+
+
 def test_links_between_files_lead_somewhere(site: Path):
     """Those of the site are followed by Sphinx; these are in files that stand outside of it, such as the README."""
     for page in pages.pages():

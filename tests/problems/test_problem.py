@@ -4,6 +4,7 @@ import pytest
 from messages import assert_each_states, assert_states
 
 import bemcontact
+from bemcontact import problems
 from bemcontact.errors import ProblemError
 from bemcontact.problems import (
     Arc,
@@ -11,9 +12,12 @@ from bemcontact.problems import (
     Condition,
     ContactZone,
     DeflectedContour,
+    EdgeForce,
     Field,
+    Fillet,
     Line,
     Material,
+    Mirror,
     Plane,
     Problem,
     Units,
@@ -57,6 +61,32 @@ def test_problem_of_objects_equals_the_problem_of_its_data():
     problem = Problem(**parts())
     assert Problem(**problem.model_dump()) == problem
     assert Problem.model_validate_json(problem.model_dump_json()) == problem
+
+
+def test_each_part_of_a_problem_file_is_public():
+    """The schema defines what a file may have; the page on Python names says that its parts are here."""
+    assert [name for name in bemcontact.schema()["$defs"] if not hasattr(problems, name)] == []
+
+
+def test_a_mirrored_outline_with_a_fillet_and_a_force_may_be_objects():
+    """The same problem as of a mapping."""
+    line = (
+        {"name": "floor", "start": (0, 0), "end": (4, 0)},
+        {"name": "side", "end": (4, 2)},
+        {"name": "roof", "end": (0, 2)},
+    )
+    zones = {"foot": {"edges": "floor", "surface": {"kind": "plane", "point": (0, 0), "normal": (0, 1)}}}
+    keys = {"name": "block", "material": Material(young_modulus=1000, poisson_ratio=0.3), "contact_zones": zones}
+    floor, side, roof = (Line(**edge) for edge in line)
+    of_objects = {
+        "boundary": Boundary(outer=[floor, side, Fillet(fillet=0.5), roof], mirror=Mirror(x=0)),
+        "conditions": {"roof": Condition(force=[EdgeForce(y=-3, width=1)])},
+    }
+    of_data = {
+        "boundary": {"outer": [*line[:2], {"fillet": 0.5}, line[2]], "mirror": {"x": 0}},
+        "conditions": {"roof": {"force": {"y": -3, "width": 1}}},
+    }
+    assert bemcontact.problem(keys | of_objects) == bemcontact.problem(keys | of_data)
 
 
 def test_edges_are_found_by_name():

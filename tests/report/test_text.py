@@ -70,6 +70,45 @@ def test_problem_summary_states_the_facts():
     assert any(line.split() == ["right", "line", "20", "mm", "2", "free"] for line in lines)
 
 
+def whole_roller(*, bonded: bool) -> Problem:
+    """A roller on a glued block, both whole: the roller is free in three ways. Or it has a flat side that is bonded."""
+    corners = {"bottom": (-9, -5), "right": (9, -5), "top": (9, 0), "left": (-9, 0)}
+    rim = {"name": "rim", "kind": "arc", "center": (0, 5), "radius": 5, "angles": (-90, 270)}
+    cap = {"flat": (-9, 0), "side": (9, 0), "roof": (9, 3), "back": (-9, 3)}
+    own = [{"name": name, "start": at} for name, at in cap.items()] if bonded else [rim]
+    steel = {"young_modulus": 210e3, "poisson_ratio": 0.3}
+    plane = {"edges": "roller/roof", "surface": {"kind": "plane", "point": (0, 3.1), "normal": (0, -1)}}
+    more = {"bonded": {"glue": ("roller/flat", "block/top")}, "contact_zones": {"lid": plane}}
+    return Problem(
+        name="roller", accuracy=0.05,
+        bodies={
+            "block": {
+                "material": steel, "boundary": {"outer": [{"name": name, "start": at} for name, at in corners.items()]},
+                "conditions": {"bottom": {"fixed": True}},
+            },
+            "roller": {
+                "material": steel, "boundary": {"outer": own},
+                "loads": {"gravity": {"density": 1e-3, "acceleration": (0, -1)}},
+            },
+        },
+        **(more if bonded else {"contacts": {"track": {"between": ("roller", "block")}}}),
+    )  # pyright: ignore  # fmt: skip
+
+
+def test_what_holds_several_bodies_is_told():
+    """The block is held in all ways and the roller in none; contact holds two of them, and nothing spins it.
+
+    Of a bonded body the bond holds all three.
+    """
+    lines = printed(problem_text.problem_summary(check(whole_roller(bonded=False)))).splitlines()
+    held = [line.strip().split(maxsplit=3) for line in lines if line.startswith("Held by")]
+    assert held[0] == ["Held", "by", "conditions", "all rigid motions except those below"]
+    assert [line[2] for line in held[1:]] == ["contact", "contact"]
+    facts = printed(problem_text.problem_summary(check(whole_roller(bonded=True))))
+    assert "Held by bonds       3 rigid motions of bonded bodies" in facts
+    assert "Held by contact" not in facts
+
+
 def test_result_summary_states_the_facts(result: analysis.Result):
     answer = printed(text.result_summary(result))
     assert "foot: (0, 0) to (40, 0) mm, 40 mm long" in answer
