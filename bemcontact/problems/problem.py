@@ -177,7 +177,7 @@ class Problem(StatedBodies):
             problem = handler(data)
             raw, issues = RawValue((), problem), []
         except ValidationError as error:
-            taken = {issue.path for issue in unread}
+            taken = {path for issue in unread for path in (issue.path, (*issue.path[:-1], 0, *issue.path[-1:]))}
             problem, raw = None, RawValue((), data)
             issues = [*unread, *(issue for issue in issues_of(error) if issue.path not in taken)]
         issues += cls._missing_parts(RawValue((), data))

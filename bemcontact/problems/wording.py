@@ -10,6 +10,8 @@ from bemcontact.checks.arguments import LONGEST_NAME
 MANY_WORDS = 100
 """Number of known or unknown words from which they are not compared with each other, which would take long."""
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
+_SPACED = re.compile(r"[-+]?[1-9]\d{0,2}( \d{3})+(\.\d*)?")
+_DIGITS_AND_UNIT = re.compile(r"([-+]?\d[\d.]*[, ][\d., ]*\d) *[^\W\d_]\S*")
 _PERCENT = re.compile(r"([-+]?\d+(\.\d+)?) ?%")
 _FORMULA = re.compile(r"[-+*/^().\d eE]*\d ?[-+*/^][-+*/^().\d eE]*")
 _BETWEEN_NAMES = re.compile(r"[,;+&/|]| and ")
@@ -93,6 +95,10 @@ def number_hint(value: object) -> str:
         return ""
     if percent := _PERCENT.fullmatch(value):
         return f"; write {float(percent[1]) / 100:.12g}"
+    if parts := _DIGITS_AND_UNIT.fullmatch(value):
+        return number_hint(parts[1])
+    if _SPACED.fullmatch(value):
+        return f"; write {value.replace(' ', '')} without blanks between thousands"
     if _FORMULA.fullmatch(value) and not _is_number(value):
         return "; write the number itself, formulas are not computed"
     if _THOUSANDS.fullmatch(value):
