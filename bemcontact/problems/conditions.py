@@ -250,7 +250,8 @@ class Condition(SpecModel):
     fixed: Flag | None = None
     """Short for displacement: {x: 0, y: 0}."""
     symmetry: Literal["x", "y"] | None = None
-    """The axis along which the bodies continue as their mirror image: short for displacement 0 along it."""
+    """The axis along which the body continues as its mirror image: short for displacement 0 along it. The edge is a
+    straight one across this axis."""
 
     @model_validator(mode="before")
     @classmethod

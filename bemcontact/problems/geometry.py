@@ -97,6 +97,8 @@ class Grading(SpecModel):
 class _EdgeBase(SpecModel):
     """Base class of all edges."""
 
+    other_words: ClassVar[Mapping[str, str]] = {"chamfer": "a chamfer is a line of its own: {name: …, start: [x, y]}"}
+
     name: Name
     """The name of the edge, by which conditions and contact zones refer to it."""
     elements: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] | None = None
@@ -347,7 +349,13 @@ class Fillet(_EdgeBase):
     """A rounded corner between the edges before and after it: an arc that is tangent to both, which it shortens."""
 
     example: ClassVar[str] = "{fillet: 2}"
-    other_words: ClassVar[Mapping[str, str]] = {"radius": "the radius is the value of fillet: {fillet: 2}"}
+    other_words: ClassVar[Mapping[str, str]] = {
+        "radius": "the radius is the value of fillet: {fillet: 2}",
+        **dict.fromkeys(
+            ("start", "end", "points", "center", "angles", "tangent"),
+            "a fillet has no place of its own: {fillet: 2} stands between the two edges that it joins",
+        ),
+    }
 
     kind: Literal["fillet"] = "fillet"
     """The shape of the edge: a fillet has the key fillet."""

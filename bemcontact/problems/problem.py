@@ -25,6 +25,7 @@ from bemcontact.problems.body_checks import (
     closed_form_issues,
     contact_issues,
     opposite_issues,
+    symmetry_issues,
 )
 from bemcontact.problems.boundary import Boundary
 from bemcontact.problems.conditions import SPRING
@@ -190,6 +191,7 @@ class Problem(StatedBodies):
             issues += problem._mismatches_of_bodies()
         if problem is not None and not issues:
             issues += problem._load_place_issues()
+            issues += symmetry_issues(problem, data)
         if problem is not None and not issues:
             issues += problem._variant_issues()
         if problem is None or issues:
