@@ -97,7 +97,13 @@ class Grading(SpecModel):
 class _EdgeBase(SpecModel):
     """Base class of all edges."""
 
-    other_words: ClassVar[Mapping[str, str]] = {"chamfer": "a chamfer is a line of its own: {name: …, start: [x, y]}"}
+    other_words: ClassVar[Mapping[str, str]] = {
+        "chamfer": "a chamfer is a line of its own: {name: …, start: [x, y]}",
+        **dict.fromkeys(("diameter", "d"), "write radius, half of the diameter"),
+        "r": "write radius",
+        "start_tangent": "write start_direction",
+        "end_tangent": "write end_direction",
+    }
 
     name: Name
     """The name of the edge, by which conditions and contact zones refer to it."""
@@ -424,6 +430,7 @@ StatedEdge = AnyEdge | Fillet
 OTHER_KINDS = {
     "circle": "a full circle is kind: arc with center, radius and angles: [0, 360], and a hole has angles: [360, 0]",
     "polyline": "give each straight piece as an edge of its own, with a name and its start",
+    **dict.fromkeys(("curve", "nurbs", "bezier"), "a smooth edge through points is kind: spline"),
 }
 """Words that are no kinds of edges -> what to write instead."""
 EdgeSpec = Annotated[

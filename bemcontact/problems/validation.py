@@ -331,12 +331,20 @@ def _unknown_key(cls: type[BaseModel], key: str) -> str:
     if isinstance(cls, type) and issubclass(cls, SpecModel) and key in cls.other_words:
         return f"unknown key '{key}'; {cls.other_words[key]}"
     tops = [model for model in _descendants(SpecModel) if model.root]
+    if "kind" in cls.model_fields and any(_have_one_home(top, [*cls.model_fields, key]) for top in tops):
+        known = ", ".join(cls.model_fields)
+        return f"unknown key '{key}' for kind: {cls.model_fields['kind'].default}; there are: {known}"
     places = [f"under {place}" if place else "at the top level" for top in tops for place in homes(top, key)]
     if 0 < len(places) <= FEW_HOMES:
         meant = near_by(key, cls.model_fields)
         here = f"did you mean '{meant}'? " if meant else ""
         return f"unknown key '{key}'; {here}'{key}' belongs {' or '.join(places)}"
     return unknown_word("key", key, cls.model_fields)
+
+
+def _have_one_home(top: type[BaseModel], keys: Iterable[str]) -> bool:
+    """Whether there is a place that may have each of some keys, if in mappings of several kinds."""
+    return bool(set.intersection(*({*homes(top, key)} for key in keys)))
 
 
 def _descendants(model: type[SpecModel]) -> Iterator[type[SpecModel]]:

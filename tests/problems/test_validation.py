@@ -14,6 +14,27 @@ def test_a_key_in_the_wrong_place_is_told_where_it_belongs(key: str, place: str)
         Problem(**{"name": "a", key: 1})
 
 
+@pytest.mark.parametrize(
+    ("edge", "words"),
+    [
+        (
+            {"kind": "spline", "points": [[0, 0], [1, 1], [2, 0]], "tangent": "end"},
+            "unknown key 'tangent' for kind: spline; ",
+        ),
+        ({"kind": "line", "start": [0, 0], "clockwise": True}, "unknown key 'clockwise' for kind: line; "),
+        ({"kind": "arc", "center": [0, 0], "diameter": 3}, "write radius, half of the diameter"),
+        ({"start": [0, 0], "fillet": 3}, "unknown key 'start'; a fillet has no place of its own"),
+        ({"start": [0, 0], "chamfer": 3}, "unknown key 'chamfer'; a chamfer is a line of its own"),
+    ],
+)
+def test_a_key_of_another_kind_of_edge_is_not_said_to_belong_where_it_stands(edge, words):
+    with pytest.raises(ProblemError) as refused:
+        Problem(**{"name": "a", "boundary": {"outer": [{"name": "edge", **edge}]}})
+    of_edge = [issue.message for issue in refused.value.issues if issue.path[:2] == ("boundary", "outer")]
+    assert any(words in message for message in of_edge)
+    assert not any("belongs under boundary.outer" in message for message in of_edge)
+
+
 def test_every_key_of_the_schema_is_found_where_its_mapping_has_it():
     """The schema that editors use is made by another library from the same classes."""
     schema = Problem.model_json_schema()
