@@ -252,6 +252,10 @@ class Condition(SpecModel):
         **dict.fromkeys(("clamped", "clamp", "encastre", "support", "hold", "held"), "write fixed: true"),
         **dict.fromkeys(("hinge", "pin", "pinned"), "hold a short edge by fixed: true; no point can bear a force"),
         **dict.fromkeys(("springs", "foundation", "stiffness", "winkler", "bedding"), SPRING),
+        **dict.fromkeys(
+            ("ux", "uy", "u", "u_x", "u_y", "fixed_x", "fixed_y", "bc", "type"),
+            "what holds an edge is displacement: {x: 0}, fixed: true or symmetry: x",
+        ),
         "free": "an edge without a condition is free; leave it out",
     }
 
@@ -414,6 +418,7 @@ class Loads(SpecModel):
     """The loads on the volume of the body; they are added."""
 
     example: ClassVar[str] = "{temperature: {expansion: 1.2e-5, change: 50}}"
+    elsewhere: ClassVar[str] = "; loads on edges are in conditions"
     other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
         ("rotation", "rotating", "spin", "speed", "angular_velocity"),
         "a body that rotates steadily has centrifugal: {density: 7.85e-9, angular_velocity: 300}, in radians per time",

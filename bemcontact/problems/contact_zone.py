@@ -37,7 +37,13 @@ class ContactZone(SpecModel):
     """Edges of the body that may touch a rigid surface without friction."""
 
     example: ClassVar[str] = "{edges: bottom, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}"
-    other_words: ClassVar[Mapping[str, str]] = LOADED
+    other_words: ClassVar[Mapping[str, str]] = {
+        **LOADED,
+        **dict.fromkeys(("friction", "friction_coefficient", "mu"), "contact is without friction; leave it out"),
+        **dict.fromkeys(
+            ("target", "rigid", "plane", "against"), "write surface: {kind: plane, point: [0, 0], normal: [0, 1]}"
+        ),
+    }
 
     edges: Annotated[Names | None, BeforeValidator(_unnamed), _SCHEMA] = Field(None, json_schema_extra={"default": ALL})
     """The name of the edge, or a list of names of edges, that may touch the surface. With `all`, or if it is left out,

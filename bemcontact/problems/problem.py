@@ -71,6 +71,10 @@ class MeshDensity(SpecModel):
     """The mesh: whether it is found or stated, and its refinement."""
 
     example: ClassVar[str] = "{refine: 2}"
+    other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("size", "element_size", "elements", "h", "density", "order"),
+        "a mesh is found for the accuracy; an edge may state its elements, such as elements: 8",
+    )
 
     refine: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] = 1
     """The number of equal parts into which each element is cut."""
@@ -144,6 +148,16 @@ class Problem(StatedBodies):
         ),
         **dict.fromkeys(("roller", "rollers"), "a rigid roller is a contact zone with surface: {kind: circle, …}"),
         **dict.fromkeys(("friction", "mu"), "contact is frictionless; leave it out"),
+        **dict.fromkeys(
+            ("contact", "zones", "contact_pairs"),
+            "contact with rigid surfaces is in contact_zones, contact between bodies in contacts",
+        ),
+        **dict.fromkeys(
+            ("geometry", "outline", "outer", "edges", "shape"),
+            "the outline is boundary: {outer: [{name: bottom, …}, …]}",
+        ),
+        **dict.fromkeys(("plane", "plane_stress"), "it belongs to material: {state: plane_stress, …}"),
+        "title": "write name",
     }
 
     tools: dict[Name, RigidTool] = Field(default_factory=dict)

@@ -31,7 +31,7 @@ from bemcontact.problems.examples import (
     text_hint,
     types_in,
 )
-from bemcontact.problems.wording import MANY_WORDS, described, near_by, number_hint, unknown_word
+from bemcontact.problems.wording import MANY_WORDS, described, has_unit, near_by, number_hint, unknown_word
 
 LARGEST_STATED = 1e30
 """Largest number in a problem. Its eighth power is still finite, so that products of any four numbers can be squared.
@@ -41,7 +41,7 @@ numbers, such as moments p L², are below `bemcontact.checks.arguments.LARGEST_N
 
 UNNAMED_KIND = "line"
 """The kind of an edge that states none."""
-INTERNAL = ("example", "root", "other_words", "inside", "as_spec")
+INTERNAL = ("example", "root", "other_words", "elsewhere", "inside", "as_spec")
 """Names of each part of a problem that the package alone uses."""
 
 
@@ -76,6 +76,8 @@ class SpecModel(BaseModel):
     """Whether this is the whole problem."""
     other_words: ClassVar[Mapping[str, str]] = {}
     """Words that are not keys -> what to write instead."""
+    elsewhere: ClassVar[str] = ""
+    """Where that is which users look for here, behind the list of the keys that there are."""
     inside: ClassVar[tuple[str, ...]] = ()
     """Names of this part that the package alone uses."""
 
@@ -254,6 +256,8 @@ def _below_misspelled(cls: type[BaseModel], data: Any, handler: ModelWrapValidat
     """List the issues of values under misspelled keys, as if the keys were spelled right."""
     issues = []
     for key, meant in misspelled(cls, data).items() if isinstance(data, Mapping) else ():
+        if isinstance(data[key], str) and has_unit(data[key]):
+            continue  # units are read under keys that are known
         try:
             handler({meant: data[key]})
         except ValidationError as error:
@@ -339,7 +343,8 @@ def _unknown_key(cls: type[BaseModel], key: str) -> str:
         meant = near_by(key, cls.model_fields)
         here = f"did you mean '{meant}'? " if meant else ""
         return f"unknown key '{key}'; {here}'{key}' belongs {' or '.join(places)}"
-    return unknown_word("key", key, cls.model_fields)
+    text = unknown_word("key", key, cls.model_fields)
+    return text + cls.elsewhere if issubclass(cls, SpecModel) and "did you mean" not in text else text
 
 
 def _have_one_home(top: type[BaseModel], keys: Iterable[str]) -> bool:

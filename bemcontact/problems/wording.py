@@ -105,13 +105,18 @@ def number_hint(value: object) -> str:
         otherwise = f", or {value.replace(',', '.')} if the comma is the decimal sign" * (value.count(",") == 1)
         return f"; write {value.replace(',', '')} without a comma between thousands{otherwise}"
     if not _is_number(value.replace(",", ".", 1)):
-        return "; write the number alone, in the units of the file" if _NUMBER_AND_UNIT.fullmatch(value) else ""
+        return "; write the number alone, in the units of the file" if has_unit(value) else ""
     if "," in value:
         return "; the decimal sign is a point"
     if _PLAIN_NUMBER.fullmatch(value):
         return "; leave the quotes out"
     number = float(value)  # Python also reads nan, inf, 210_000, and the digits of other scripts
     return f"; write {number:.15g}" if isfinite(number) else f"; {value.strip()} is not a finite number"
+
+
+def has_unit(text: str) -> bool:
+    """Whether a text is a number with a unit."""
+    return _NUMBER_AND_UNIT.fullmatch(text) is not None
 
 
 def _is_number(text: str) -> bool:
