@@ -8,7 +8,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, mod
 
 from bemcontact.problems.rigid_surface import DeflectedContour, SurfaceSpec
 from bemcontact.problems.surface_lines import LOADED
-from bemcontact.problems.validation import Name, Number, Point, SpecModel, invalid
+from bemcontact.problems.validation import ALL, Name, Number, Point, SpecModel, invalid
 
 CANCELLED = 1e-14
 """Fraction of the terms of a sum below which the sum is round-off of factors such as 0.1."""
@@ -22,10 +22,6 @@ def _as_list(value: Any) -> Any:
 _SCHEMA = WithJsonSchema({"type": ["string", "array"], "items": {"type": "string"}, "minItems": 1})
 Names = Annotated[tuple[Name, ...], Field(min_length=1), BeforeValidator(_as_list), _SCHEMA]
 """One name, or a list of names."""
-
-
-ALL = "all"
-"""The word for all edges that can see a surface; a list with this word names an edge."""
 
 
 def _unnamed(value: Any) -> Any:

@@ -39,6 +39,8 @@ The arrays that are computed from a problem have larger numbers, and a limit of 
 numbers, such as moments p L², are below `bemcontact.checks.arguments.LARGEST_NUMBER`."""
 
 
+ALL = "all"
+"""The word for all edges that can see a surface; a list with this word names an edge."""
 UNNAMED_KIND = "line"
 """The kind of an edge that states none."""
 INTERNAL = ("example", "root", "other_words", "elsewhere", "inside", "as_spec")
@@ -138,13 +140,13 @@ class SpecModel(BaseModel):
 
 
 def _stated(value: Any) -> Any:
-    """What a spec has for a value; a list of one name is the name."""
+    """What a spec has for a value; a list of one name is the name, if it is no word of its own."""
     match value:
         case SpecModel():
             return value.as_spec()
         case Mapping():
             return {key: _stated(part) for key, part in value.items()}
-        case (str() as name,):
+        case (str() as name,) if name != ALL:
             return str(name)
         case tuple() | list():
             return [_stated(part) for part in value]
