@@ -534,7 +534,7 @@ class Problem(StatedBodies):
         ----------
         path : key path such as ``material.young_modulus`` or ``boundary.outer[2].elements``; an edge may be given by
             its name, ``boundary.outer.top.elements``. Zones, tools and load cases are changed, none is added.
-        value : the new value, of the form that a spec has there
+        value : the new value, of the form that a spec has there; also a number or an array of NumPy
 
         Raises
         ------
@@ -560,7 +560,7 @@ class Problem(StatedBodies):
             raise ProblemError(f"values by key path are needed, such as {example}; found {shown(changes)}")
         data = self.model_dump()
         for path, value in changes.items():
-            data = with_entry(data, existing_path(data, parsed_path(path)), value)
+            data = with_entry(data, existing_path(data, parsed_path(path)), _plain(value))
         return type(self)(**data)
 
 

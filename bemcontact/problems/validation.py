@@ -18,7 +18,7 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
-from bemcontact.checks.arguments import label_fault
+from bemcontact.checks.arguments import label_fault, shown
 from bemcontact.checks.docstrings import attribute_docstrings, docstring
 from bemcontact.errors import LINE_BREAKS, Issue, ProblemError, hidden_character
 from bemcontact.problems.examples import (
@@ -109,6 +109,16 @@ class SpecModel(BaseModel):
             issues = [issue for issue in issues if issue.path[:1] not in [(key,) for key in nameless]]
             issues += [Issue(path=(key,), message=message) for key, message in nameless.items()]
             raise validation_error(cls.__name__, issues) from None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Refuse to change a key, and say what to do instead."""
+        if name in type(self).model_fields:
+            key = name if self.root else f"….{name}"
+            raise ProblemError(
+                f"a {type(self).__name__} does not change; problem.with_value('{key}', {shown(value)}) makes a problem "
+                "with another value"
+            )
+        super().__setattr__(name, value)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the keys of a spec that state the same: lists, mappings, numbers and texts, without defaults."""

@@ -1,5 +1,6 @@
 """Problems made in Python: changes of values, and errors that list every issue."""
 
+import numpy as np
 import pytest
 from messages import assert_each_states, assert_states
 
@@ -123,6 +124,23 @@ def test_with_value_makes_a_new_problem(path, value, found):
     problem = Problem(**parts())
     assert found(problem.with_value(path, value)) == value
     assert problem == Problem(**parts())
+
+
+def test_values_of_numpy_are_those_of_python():
+    """A loop over an array has them."""
+    problem = Problem(**parts())
+    for value in (np.int64(7), np.float32(7), np.array(7.0)):
+        assert problem.with_value("conditions.top.pressure", value) == problem.with_value("conditions.top.pressure", 7)
+    normal = "contact_zones.foot.surface.normal"
+    assert problem.with_value(normal, np.array([0, 2])) == problem.with_value(normal, [0, 2])
+
+
+def test_a_problem_does_not_change_and_says_what_to_do():
+    problem = Problem(**parts())
+    with pytest.raises(ProblemError, match=r"a Problem does not change; problem\.with_value\('name', 'x'\)"):
+        problem.name = "x"
+    with pytest.raises(ProblemError, match=r"a Material does not change; problem\.with_value\('….young_modulus', 5\)"):
+        problem.material.young_modulus = 5
 
 
 def test_values_that_must_agree_are_changed_at_once():
