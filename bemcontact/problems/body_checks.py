@@ -1,6 +1,7 @@
 """Checks of several bodies against each other: names first, then which parts can meet."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from bemcontact.problems.wording import exact, unknown_word
 
 COINCIDE = 1e-6
 """Distance of bonded edges over the size of the bodies that is round-off of coordinates."""
+ACROSS = 1e-3
+"""How far an edge may leave a line of symmetry, over its length: users round coordinates."""
 SAMPLES = 33
 """Places of an edge where the distance is measured."""
 
@@ -52,6 +55,28 @@ def body_issues(problem: StatedBodies) -> Iterator[Issue]:
                     yield KeyIssue(path=("bodies", name, "conditions", edge), message=message)
     if all(body.rigid for body in problem.bodies.values()):
         yield Issue(path=("bodies",), message="all bodies are rigid; at least one has to be elastic")
+
+
+def symmetry_issues(problem: StatedBodies, data: Any) -> Iterator[Issue]:
+    """Issues of lines of symmetry in the data of a valid problem that are no straight edges across their axis."""
+    bodies = data.get("bodies") or {} if isinstance(data, Mapping) else {}
+    for name, body in [("", data), *bodies.items()]:
+        stated = body.get("conditions") if isinstance(body, Mapping) else None
+        for own, condition in (stated or {}).items():
+            axis = condition.get("symmetry") if isinstance(condition, Mapping) else None
+            if axis not in ("x", "y"):
+                continue
+            edge, other = problem.edge(qualified(name, own)), "y" if axis == "x" else "x"
+            wide = np.ptp(edge.points(np.linspace(0, 1, SAMPLES)), axis=0) > ACROSS * edge.length
+            if wide["xy".index(axis)]:
+                hint = f"write symmetry: {other}"
+                if wide["xy".index(other)]:
+                    hint = f"an edge that slides along {other} has displacement: {{{axis}: 0}}"
+                message = (
+                    f"'{own}' is no straight edge along {other}, where the body may go on as its image along {axis}"
+                )
+                path = ("bodies", name) if name else ()
+                yield Issue(path=(*path, "conditions", own, "symmetry"), message=f"{message}; {hint}")
 
 
 def _copy_issues(problem: StatedBodies, name: str, body: BodySpec) -> Iterator[Issue]:

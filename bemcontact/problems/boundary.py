@@ -54,8 +54,8 @@ class Boundary(SpecModel):
     """The edges of the outer loop, counterclockwise: the body is on the left."""
     file: Text | None = None
     """In place of the edges a drawing in DXF or a list of points in CSV, in the folder of the problem file."""
-    layer: Text | None = None
-    """The only layer of the drawing that is read; all of them if left out."""
+    layer: Text | tuple[Text, ...] | None = None
+    """The only layer of the drawing that is read, or a list of the layers that are; all of them if left out."""
     scale: Positive | None = None
     """The factor of all coordinates of the drawing."""
     holes: tuple[LoopSpec, ...] = ()

@@ -38,6 +38,10 @@ class Field(SpecModel):
     """
 
     example: ClassVar[str] = "{constant: 3, x: 0.5}"
+    other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("table", "points", "values"),
+        "a table of distance from the start of the edge and value is along: [[0, 10], [5, 20]]",
+    )
 
     constant: Number = 0.0
     """The value at the origin."""
@@ -116,6 +120,14 @@ class EdgeForce(SpecModel):
     """A force on an edge, spread evenly over a part of it or all of it."""
 
     example: ClassVar[str] = "{y: -400, width: 2, at: 10}"
+    other_words: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("position", "point", "place", "location", "distance", "center"),
+            "write at: 10, the distance of its middle from the start of the edge",
+        ),
+        "normal": "a force has components x and y; across the edge acts pressure: 20",
+        "moment": "a couple is two forces: [{y: 10, width: 1, at: 5}, {y: -10, width: 1, at: 15}]",
+    }
 
     x: Number = 0.0
     """The component along x, per thickness."""
@@ -150,6 +162,8 @@ class EdgeForce(SpecModel):
 
 def _forces(value: Any) -> Any:
     """Read one force as a list of it."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        raise invalid(f"a force has a direction; write {{y: {value:g}}}, or x")
     return [value] if isinstance(value, Mapping | EdgeForce) else value
 
 
@@ -157,6 +171,10 @@ class AxisFields(SpecModel):
     """A component along each axis; an axis that is left out is not prescribed."""
 
     example: ClassVar[str] = "{x: 0}"
+    other_words: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(("along", "constant"), "the axis comes first: {y: {along: [[0, 10], [5, 20]]}}"),
+        **dict.fromkeys(("normal", "tangent"), "components are along x and y; across the edge acts pressure: 20"),
+    }
 
     x: Field | None = None
     """The component along x: a number, or a polynomial in the coordinates."""
@@ -234,6 +252,10 @@ class Condition(SpecModel):
         **dict.fromkeys(("clamped", "clamp", "encastre", "support", "hold", "held"), "write fixed: true"),
         **dict.fromkeys(("hinge", "pin", "pinned"), "hold a short edge by fixed: true; no point can bear a force"),
         **dict.fromkeys(("springs", "foundation", "stiffness", "winkler", "bedding"), SPRING),
+        **dict.fromkeys(
+            ("ux", "uy", "u", "u_x", "u_y", "fixed_x", "fixed_y", "bc", "type"),
+            "what holds an edge is displacement: {x: 0}, fixed: true or symmetry: x",
+        ),
         "free": "an edge without a condition is free; leave it out",
     }
 
@@ -250,7 +272,8 @@ class Condition(SpecModel):
     fixed: Flag | None = None
     """Short for displacement: {x: 0, y: 0}."""
     symmetry: Literal["x", "y"] | None = None
-    """The axis along which the bodies continue as their mirror image: short for displacement 0 along it."""
+    """The axis along which the body continues as its mirror image: short for displacement 0 along it. The edge is a
+    straight one across this axis."""
 
     @model_validator(mode="before")
     @classmethod
@@ -395,6 +418,7 @@ class Loads(SpecModel):
     """The loads on the volume of the body; they are added."""
 
     example: ClassVar[str] = "{temperature: {expansion: 1.2e-5, change: 50}}"
+    elsewhere: ClassVar[str] = "; loads on edges are in conditions"
     other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
         ("rotation", "rotating", "spin", "speed", "angular_velocity"),
         "a body that rotates steadily has centrifugal: {density: 7.85e-9, angular_velocity: 300}, in radians per time",

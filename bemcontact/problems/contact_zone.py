@@ -8,7 +8,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, mod
 
 from bemcontact.problems.rigid_surface import DeflectedContour, SurfaceSpec
 from bemcontact.problems.surface_lines import LOADED
-from bemcontact.problems.validation import Name, Number, Point, SpecModel, invalid
+from bemcontact.problems.validation import ALL, Name, Number, Point, SpecModel, invalid
 from bemcontact.problems.way import Way
 
 CANCELLED = 1e-14
@@ -25,10 +25,6 @@ Names = Annotated[tuple[Name, ...], Field(min_length=1), BeforeValidator(_as_lis
 """One name, or a list of names."""
 
 
-ALL = "all"
-"""The word for all edges that can see a surface; a list with this word names an edge."""
-
-
 def _unnamed(value: Any) -> Any:
     """Read the word for all edges as no names."""
     return None if isinstance(value, str) and value == ALL else value
@@ -38,7 +34,13 @@ class ContactZone(SpecModel):
     """Edges of the body that may touch a rigid surface without friction."""
 
     example: ClassVar[str] = "{edges: bottom, surface: {kind: plane, point: [0, 0], normal: [0, 1]}}"
-    other_words: ClassVar[Mapping[str, str]] = LOADED
+    other_words: ClassVar[Mapping[str, str]] = {
+        **LOADED,
+        **dict.fromkeys(("friction", "friction_coefficient", "mu"), "contact is without friction; leave it out"),
+        **dict.fromkeys(
+            ("target", "rigid", "plane", "against"), "write surface: {kind: plane, point: [0, 0], normal: [0, 1]}"
+        ),
+    }
 
     edges: Annotated[Names | None, BeforeValidator(_unnamed), _SCHEMA] = Field(None, json_schema_extra={"default": ALL})
     """The name of the edge, or a list of names of edges, that may touch the surface. With `all`, or if it is left out,

@@ -10,7 +10,7 @@ import numpy as np
 from bemcontact.errors import Issue, KeyPath
 from bemcontact.problems.boundary import Boundary, far_issue, size_of_edges
 from bemcontact.problems.conditions import Condition
-from bemcontact.problems.contact_zone import ALL, TOOL_COMPONENTS, ContactZone, RigidTool, ToolAction
+from bemcontact.problems.contact_zone import TOOL_COMPONENTS, ContactZone, RigidTool, ToolAction
 from bemcontact.problems.curves import Edge
 from bemcontact.problems.geometry import MOST_ELEMENTS, Line
 from bemcontact.problems.key_path import RawValue
@@ -19,7 +19,7 @@ from bemcontact.problems.outlines import MIRRORED
 from bemcontact.problems.reference import Hertz, Table, Values
 from bemcontact.problems.rigid_surface import Circle, DeflectedContour, Plane, RigidSurface, Shape
 from bemcontact.problems.surface_lines import Polyline, Spline
-from bemcontact.problems.validation import KeyIssue
+from bemcontact.problems.validation import ALL, KeyIssue
 from bemcontact.problems.visibility import turned_to, zone_edges
 from bemcontact.problems.wording import unknown_word
 

@@ -97,6 +97,14 @@ class Grading(SpecModel):
 class _EdgeBase(SpecModel):
     """Base class of all edges."""
 
+    other_words: ClassVar[Mapping[str, str]] = {
+        "chamfer": "a chamfer is a line of its own: {name: …, start: [x, y]}",
+        **dict.fromkeys(("diameter", "d"), "write radius, half of the diameter"),
+        "r": "write radius",
+        "start_tangent": "write start_direction",
+        "end_tangent": "write end_direction",
+    }
+
     name: Name
     """The name of the edge, by which conditions and contact zones refer to it."""
     elements: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] | None = None
@@ -347,7 +355,13 @@ class Fillet(_EdgeBase):
     """A rounded corner between the edges before and after it: an arc that is tangent to both, which it shortens."""
 
     example: ClassVar[str] = "{fillet: 2}"
-    other_words: ClassVar[Mapping[str, str]] = {"radius": "the radius is the value of fillet: {fillet: 2}"}
+    other_words: ClassVar[Mapping[str, str]] = {
+        "radius": "the radius is the value of fillet: {fillet: 2}",
+        **dict.fromkeys(
+            ("start", "end", "points", "center", "angles", "tangent"),
+            "a fillet has no place of its own: {fillet: 2} stands between the two edges that it joins",
+        ),
+    }
 
     kind: Literal["fillet"] = "fillet"
     """The shape of the edge: a fillet has the key fillet."""
@@ -416,6 +430,7 @@ StatedEdge = AnyEdge | Fillet
 OTHER_KINDS = {
     "circle": "a full circle is kind: arc with center, radius and angles: [0, 360], and a hole has angles: [360, 0]",
     "polyline": "give each straight piece as an edge of its own, with a name and its start",
+    **dict.fromkeys(("curve", "nurbs", "bezier"), "a smooth edge through points is kind: spline"),
 }
 """Words that are no kinds of edges -> what to write instead."""
 EdgeSpec = Annotated[

@@ -161,7 +161,8 @@ def _nestings(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Iter
     for i in range(1, len(loops)):
         name = loops[i][0].name
         if not contains(outlines[0], outlines[i][0]):
-            yield Issue(path=paths[i], message=f"the hole of '{name}' is outside the outer loop; move it inside")
+            message = f"the hole of '{name}' is outside the outer loop; move it inside, or make it one of the bodies"
+            yield Issue(path=paths[i], message=message)
         for j in range(1, len(loops)):
             if i != j and contains(outlines[j], outlines[i][0]):
                 message = f"the hole of '{name}' is inside the hole of '{loops[j][0].name}'; leave one of them out"

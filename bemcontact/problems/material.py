@@ -14,10 +14,14 @@ class Material(SpecModel):
 
     example: ClassVar[str] = "{young_modulus: 210000, poisson_ratio: 0.3}"
     other_words: ClassVar[Mapping[str, str]] = {
-        **dict.fromkeys(("E", "elastic_modulus"), "Young's modulus is young_modulus"),
+        **dict.fromkeys(
+            ("E", "elastic_modulus", "youngs_modulus", "young", "Young", "modulus"), "Young's modulus is young_modulus"
+        ),
         **dict.fromkeys(("nu", "ν"), "Poisson's ratio is poisson_ratio"),
         **dict.fromkeys(("density", "rho"), "the density belongs to the load that needs it: loads.gravity.density"),
         **dict.fromkeys(("plane", "plane_stress", "plane_strain"), "write state: plane_stress, or state: plane_strain"),
+        **dict.fromkeys(("friction", "mu"), "contact is without friction; leave it out"),
+        **dict.fromkeys(("G", "shear_modulus"), "write young_modulus and poisson_ratio: E = 2 G (1 + ν)"),
         **dict.fromkeys(("alpha", "expansion"), "thermal expansion belongs to the load: loads.temperature.expansion"),
     }
 

@@ -25,6 +25,7 @@ from bemcontact.problems.body_checks import (
     closed_form_issues,
     contact_issues,
     opposite_issues,
+    symmetry_issues,
 )
 from bemcontact.problems.boundary import Boundary
 from bemcontact.problems.conditions import SPRING
@@ -71,6 +72,10 @@ class MeshDensity(SpecModel):
     """The mesh: whether it is found or stated, and its refinement."""
 
     example: ClassVar[str] = "{refine: 2}"
+    other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("size", "element_size", "elements", "h", "density", "order"),
+        "a mesh is found for the accuracy; an edge may state its elements, such as elements: 8",
+    )
 
     refine: Annotated[Count, Field(ge=1, le=MOST_ELEMENTS)] = 1
     """The number of equal parts into which each element is cut."""
@@ -144,6 +149,16 @@ class Problem(StatedBodies):
         ),
         **dict.fromkeys(("roller", "rollers"), "a rigid roller is a contact zone with surface: {kind: circle, …}"),
         **dict.fromkeys(("friction", "mu"), "contact is frictionless; leave it out"),
+        **dict.fromkeys(
+            ("contact", "zones", "contact_pairs"),
+            "contact with rigid surfaces is in contact_zones, contact between bodies in contacts",
+        ),
+        **dict.fromkeys(
+            ("geometry", "outline", "outer", "edges", "shape"),
+            "the outline is boundary: {outer: [{name: bottom, …}, …]}",
+        ),
+        **dict.fromkeys(("plane", "plane_stress"), "it belongs to material: {state: plane_stress, …}"),
+        "title": "write name",
     }
 
     tools: dict[Name, RigidTool] = Field(default_factory=dict)
@@ -178,7 +193,7 @@ class Problem(StatedBodies):
             problem = handler(data)
             raw, issues = RawValue((), problem), []
         except ValidationError as error:
-            taken = {issue.path for issue in unread}
+            taken = {path for issue in unread for path in (issue.path, (*issue.path[:-1], 0, *issue.path[-1:]))}
             problem, raw = None, RawValue((), data)
             issues = [*unread, *(issue for issue in issues_of(error) if issue.path not in taken)]
         issues += cls._missing_parts(RawValue((), data))
@@ -191,6 +206,7 @@ class Problem(StatedBodies):
             issues += problem._mismatches_of_bodies()
         if problem is not None and not issues:
             issues += problem._load_place_issues()
+            issues += symmetry_issues(problem, data)
         if problem is not None and not issues:
             issues += problem._variant_issues()
         if problem is None or issues:
@@ -521,7 +537,7 @@ class Problem(StatedBodies):
         ----------
         path : key path such as ``material.young_modulus`` or ``boundary.outer[2].elements``; an edge may be given by
             its name, ``boundary.outer.top.elements``. Zones, tools and load cases are changed, none is added.
-        value : the new value, of the form that a spec has there
+        value : the new value, of the form that a spec has there; also a number or an array of NumPy
 
         Raises
         ------
@@ -547,7 +563,7 @@ class Problem(StatedBodies):
             raise ProblemError(f"values by key path are needed, such as {example}; found {shown(changes)}")
         data = self.model_dump()
         for path, value in changes.items():
-            data = with_entry(data, existing_path(data, parsed_path(path)), value)
+            data = with_entry(data, existing_path(data, parsed_path(path)), _plain(value))
         return type(self)(**data)
 
 

@@ -11,8 +11,10 @@ from typing import Any, NamedTuple
 from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.problems.units import METERS, NEWTONS
 
-QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*((?:1\s*/\s*)?[A-Za-zµμ°%][^#]*?)\s*")
-"""A number with a unit behind it."""
+QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?+)\s*((?:1?\s*/\s*)?[A-Za-zµμ°%][^#]*?)\s*")
+"""A number with a unit behind it. The exponent is one of the number, never a unit e."""
+POWER = re.compile(r"(?<=[A-Za-z])([2-4])(?![A-Za-z0-9])")
+"""The power of a unit in N/mm2 or kg/m3."""
 
 
 class Dimension(NamedTuple):
@@ -64,6 +66,10 @@ OF_REFERENCE: Mapping[str, Dimension] = {
 """Key of a reference -> dimension of its value. Positions may be angles, so that they have no units."""
 POWERS = {"constant": 0, "x": 1, "y": 1, "xx": 2, "xy": 2, "yy": 2}
 """Key of a polynomial -> power of the coordinates."""
+
+
+SPELLED = {unit.casefold(): unit for unit in (*METERS, *NEWTONS, "Pa", "kPa", "MPa", "GPa", "psi", "ksi", "K", "kg")}
+"""Unit in small letters -> how it is written."""
 
 
 def dimension_of(path: KeyPath) -> Dimension | None:
@@ -142,14 +148,8 @@ def _texts(value: Any, path: KeyPath) -> Iterator[str]:
         case list() | tuple():
             for i, part in enumerate(value):
                 yield from _texts(part, (*path, i))
-        case str() if _quantity(value) and dimension_of(path) is not None:
+        case str() if QUANTITY.fullmatch(value) and dimension_of(path) is not None:
             yield value
-
-
-def _quantity(text: str) -> re.Match[str] | None:
-    """The number and the unit of a text; None without a unit: 1e3 is a number in quotes."""
-    found = QUANTITY.fullmatch(text)
-    return None if found is None or re.fullmatch(r"[eE][-+]?\d+", found[2]) else found
 
 
 def _below(path: KeyPath, key: Any) -> KeyPath:
@@ -167,7 +167,7 @@ def _converted(value: Any, path: KeyPath, reader: "_Reader", issues: list[Issue]
         case list() | tuple():
             return [_converted(part, (*path, i), reader, issues) for i, part in enumerate(value)]
         case str():
-            found, wanted = _quantity(value), dimension_of(path)
+            found, wanted = QUANTITY.fullmatch(value), dimension_of(path)
             if found is None or wanted is None:
                 return value
             try:
@@ -189,12 +189,15 @@ class _Reader:
         text = f"{value:g} {unit}"
         if find_spec("pint") is None:
             raise ValueError(f"values with units need the extra units: pip install 'bemcontact[units]'; found {text}")
+        if "mPa" in unit:
+            raise ValueError(f"mPa in {text} is a thousandth of Pa; write {text.replace('mPa', 'MPa')}")
         registry = _registry()
         name = {"°C": "delta_degC", "degC": "delta_degC", "C": "delta_degC", "°": "degree", "%": "percent"}.get(
-            unit, unit
+            unit, "1" * unit.startswith("/") + unit
         )
+        name = POWER.sub(r"**\1", name.replace("²", "2").replace("³", "3")).replace("·", "*")
         try:
-            quantity = registry.Quantity(value, name.replace("²", "**2").replace("³", "**3").replace("·", "*"))
+            quantity = registry.Quantity(value, name)
             target = "radian" if wanted in (DEGREES, RADIANS) else _si(wanted)
             if wanted is DEGREES:
                 return float(quantity.to("degree").magnitude)
@@ -202,7 +205,9 @@ class _Reader:
         except Exception as error:  # pint raises errors of many kinds
             if type(error).__name__ == "DimensionalityError":
                 raise ValueError(f"expected {wanted.name} such as {wanted.example}; found {text}") from None
-            raise ValueError(f"unknown unit '{unit}' in {text}; write {wanted.name} such as {wanted.example}") from None
+            spelled = re.sub(r"[A-Za-z]+", lambda word: SPELLED.get(word[0].casefold(), word[0]), unit)
+            hint = f"did you mean {spelled}?" if spelled != unit else f"write {wanted.name} such as {wanted.example}"
+            raise ValueError(f"unknown unit '{unit}' in {text}; {hint}") from None
         return number / (METERS[self.length] ** wanted.length * NEWTONS[self.force] ** wanted.force)
 
 

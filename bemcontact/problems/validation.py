@@ -18,7 +18,7 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
-from bemcontact.checks.arguments import label_fault
+from bemcontact.checks.arguments import label_fault, shown
 from bemcontact.checks.docstrings import attribute_docstrings, docstring
 from bemcontact.errors import LINE_BREAKS, Issue, ProblemError, hidden_character
 from bemcontact.problems.examples import (
@@ -31,7 +31,7 @@ from bemcontact.problems.examples import (
     text_hint,
     types_in,
 )
-from bemcontact.problems.wording import MANY_WORDS, described, near_by, number_hint, unknown_word
+from bemcontact.problems.wording import MANY_WORDS, described, has_unit, near_by, number_hint, unknown_word
 
 LARGEST_STATED = 1e30
 """Largest number in a problem. Its eighth power is still finite, so that products of any four numbers can be squared.
@@ -39,9 +39,11 @@ The arrays that are computed from a problem have larger numbers, and a limit of 
 numbers, such as moments p L², are below `bemcontact.checks.arguments.LARGEST_NUMBER`."""
 
 
+ALL = "all"
+"""The word for all edges that can see a surface; a list with this word names an edge."""
 UNNAMED_KIND = "line"
 """The kind of an edge that states none."""
-INTERNAL = ("example", "root", "other_words", "inside", "as_spec")
+INTERNAL = ("example", "root", "other_words", "elsewhere", "inside", "as_spec")
 """Names of each part of a problem that the package alone uses."""
 
 
@@ -76,6 +78,8 @@ class SpecModel(BaseModel):
     """Whether this is the whole problem."""
     other_words: ClassVar[Mapping[str, str]] = {}
     """Words that are not keys -> what to write instead."""
+    elsewhere: ClassVar[str] = ""
+    """Where that is which users look for here, behind the list of the keys that there are."""
     inside: ClassVar[tuple[str, ...]] = ()
     """Names of this part that the package alone uses."""
 
@@ -105,6 +109,16 @@ class SpecModel(BaseModel):
             issues = [issue for issue in issues if issue.path[:1] not in [(key,) for key in nameless]]
             issues += [Issue(path=(key,), message=message) for key, message in nameless.items()]
             raise validation_error(cls.__name__, issues) from None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Refuse to change a key, and say what to do instead."""
+        if name in type(self).model_fields:
+            key = name if self.root else f"….{name}"
+            raise ProblemError(
+                f"a {type(self).__name__} does not change; problem.with_value('{key}', {shown(value)}) makes a problem "
+                "with another value"
+            )
+        super().__setattr__(name, value)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the keys of a spec that state the same: lists, mappings, numbers and texts, without defaults."""
@@ -136,13 +150,13 @@ class SpecModel(BaseModel):
 
 
 def _stated(value: Any) -> Any:
-    """What a spec has for a value; a list of one name is the name."""
+    """What a spec has for a value; a list of one name is the name, if it is no word of its own."""
     match value:
         case SpecModel():
             return value.as_spec()
         case Mapping():
             return {key: _stated(part) for key, part in value.items()}
-        case (str() as name,):
+        case (str() as name,) if name != ALL:
             return str(name)
         case tuple() | list():
             return [_stated(part) for part in value]
@@ -254,6 +268,8 @@ def _below_misspelled(cls: type[BaseModel], data: Any, handler: ModelWrapValidat
     """List the issues of values under misspelled keys, as if the keys were spelled right."""
     issues = []
     for key, meant in misspelled(cls, data).items() if isinstance(data, Mapping) else ():
+        if isinstance(data[key], str) and has_unit(data[key]):
+            continue  # units are read under keys that are known
         try:
             handler({meant: data[key]})
         except ValidationError as error:
@@ -331,12 +347,21 @@ def _unknown_key(cls: type[BaseModel], key: str) -> str:
     if isinstance(cls, type) and issubclass(cls, SpecModel) and key in cls.other_words:
         return f"unknown key '{key}'; {cls.other_words[key]}"
     tops = [model for model in _descendants(SpecModel) if model.root]
+    if "kind" in cls.model_fields and any(_have_one_home(top, [*cls.model_fields, key]) for top in tops):
+        known = ", ".join(cls.model_fields)
+        return f"unknown key '{key}' for kind: {cls.model_fields['kind'].default}; there are: {known}"
     places = [f"under {place}" if place else "at the top level" for top in tops for place in homes(top, key)]
     if 0 < len(places) <= FEW_HOMES:
         meant = near_by(key, cls.model_fields)
         here = f"did you mean '{meant}'? " if meant else ""
         return f"unknown key '{key}'; {here}'{key}' belongs {' or '.join(places)}"
-    return unknown_word("key", key, cls.model_fields)
+    text = unknown_word("key", key, cls.model_fields)
+    return text + cls.elsewhere if issubclass(cls, SpecModel) and "did you mean" not in text else text
+
+
+def _have_one_home(top: type[BaseModel], keys: Iterable[str]) -> bool:
+    """Whether there is a place that may have each of some keys, if in mappings of several kinds."""
+    return bool(set.intersection(*({*homes(top, key)} for key in keys)))
 
 
 def _descendants(model: type[SpecModel]) -> Iterator[type[SpecModel]]:

@@ -10,6 +10,8 @@ from bemcontact.checks.arguments import LONGEST_NAME
 MANY_WORDS = 100
 """Number of known or unknown words from which they are not compared with each other, which would take long."""
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
+_SPACED = re.compile(r"[-+]?[1-9]\d{0,2}( \d{3})+(\.\d*)?")
+_DIGITS_AND_UNIT = re.compile(r"([-+]?\d[\d.]*[, ][\d., ]*\d) *[^\W\d_]\S*")
 _PERCENT = re.compile(r"([-+]?\d+(\.\d+)?) ?%")
 _FORMULA = re.compile(r"[-+*/^().\d eE]*\d ?[-+*/^][-+*/^().\d eE]*")
 _BETWEEN_NAMES = re.compile(r"[,;+&/|]| and ")
@@ -93,19 +95,28 @@ def number_hint(value: object) -> str:
         return ""
     if percent := _PERCENT.fullmatch(value):
         return f"; write {float(percent[1]) / 100:.12g}"
+    if parts := _DIGITS_AND_UNIT.fullmatch(value):
+        return number_hint(parts[1])
+    if _SPACED.fullmatch(value):
+        return f"; write {value.replace(' ', '')} without blanks between thousands"
     if _FORMULA.fullmatch(value) and not _is_number(value):
         return "; write the number itself, formulas are not computed"
     if _THOUSANDS.fullmatch(value):
         otherwise = f", or {value.replace(',', '.')} if the comma is the decimal sign" * (value.count(",") == 1)
         return f"; write {value.replace(',', '')} without a comma between thousands{otherwise}"
     if not _is_number(value.replace(",", ".", 1)):
-        return "; write the number alone, in the units of the file" if _NUMBER_AND_UNIT.fullmatch(value) else ""
+        return "; write the number alone, in the units of the file" if has_unit(value) else ""
     if "," in value:
         return "; the decimal sign is a point"
     if _PLAIN_NUMBER.fullmatch(value):
         return "; leave the quotes out"
     number = float(value)  # Python also reads nan, inf, 210_000, and the digits of other scripts
     return f"; write {number:.15g}" if isfinite(number) else f"; {value.strip()} is not a finite number"
+
+
+def has_unit(text: str) -> bool:
+    """Whether a text is a number with a unit."""
+    return _NUMBER_AND_UNIT.fullmatch(text) is not None
 
 
 def _is_number(text: str) -> bool:

@@ -3,7 +3,7 @@
 import os
 import re
 from cmath import phase, rect
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.util import find_spec
@@ -12,7 +12,7 @@ from math import degrees, pi
 from pathlib import Path
 from typing import Any
 
-from bemcontact.checks.arguments import file_path, real_number, text_of_argument
+from bemcontact.checks.arguments import file_path, real_number, texts
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problems.geometry import MOST_POINTS
 from bemcontact.problems.units import METERS
@@ -101,22 +101,24 @@ class DrawnPiece:
         return {"name": name, **self.shape, "angles": [first, last]}
 
 
-def outline(path: str | os.PathLike[str], layer: str | None = None, scale: float = 1.0) -> dict[str, Any]:
+def outline(
+    path: str | os.PathLike[str], layer: str | Sequence[str] | None = None, scale: float = 1.0
+) -> dict[str, Any]:
     """Read the outline of a body from a drawing in DXF, with the extra ``cad``, or from a list of points.
 
     Parameters
     ----------
     path : the file; one that ends in .csv, .txt or .dat has a point x, y in each line, and an empty line between loops.
         Corners, straight pieces, arcs and smooth curves are recognized
-    layer : name of the only layer of a drawing that is read; all of them if None
+    layer : name of the only layer of a drawing that is read, or a list of the layers that are; all of them if None
     scale : factor of all coordinates
 
     Returns
     -------
     dict
         The value of ``boundary`` in a problem: ``outer`` and ``holes``. Edges have the name of their layer, with a
-        number if it has several; those of the layer 0, and of points, are called edge. Numbers run around each loop
-        from its lowest point, and start at the outer one.
+        number if it has several; those of the layer 0, of an only layer, and of points are called edge. Numbers run
+        around each loop from its lowest point, and start at the outer one.
 
     Raises
     ------
@@ -127,7 +129,7 @@ def outline(path: str | os.PathLike[str], layer: str | None = None, scale: float
     number = real_number(scale, "scale")
     if number <= 0:
         raise ProblemError(f"scale must be greater than 0; found {number:g}")
-    wanted = None if layer is None else text_of_argument(layer, "the name of a layer")
+    wanted = layer if layer is None or isinstance(layer, str) else texts(layer, "layer")
     if file.suffix.lower() in POINTS:
         return _of_points(file, wanted, number)
     return boundary_of(drawn_pieces(_drawing(file), wanted, number), str(file))
@@ -178,8 +180,8 @@ def _read(stated: Mapping[str, Any], folder: Path, length: Any) -> dict[str, Any
     if "outer" in others:
         raise ProblemError(Issue(path=("outer",), message="the edges are those of the file; leave them out"))
     layer, scale = stated.get("layer"), stated.get("scale")
-    if layer is not None and not isinstance(layer, str):
-        raise ProblemError(Issue(path=("layer",), message="a layer is a text; write it in quotes"))
+    if layer is not None and not all(isinstance(one, str) for one in (layer if isinstance(layer, list) else [layer])):
+        raise ProblemError(Issue(path=("layer",), message="a layer is a text, or a list of texts; write it in quotes"))
     if scale is not None and (isinstance(scale, bool) or not isinstance(scale, int | float) or scale <= 0):
         raise ProblemError(Issue(path=("scale",), message=f"scale is a number greater than 0; found {scale!r}"))
     if Path(stated["file"]).suffix.lower() in POINTS:
@@ -195,7 +197,7 @@ def _read(stated: Mapping[str, Any], folder: Path, length: Any) -> dict[str, Any
     return {**read, **others}
 
 
-def _of_points(path: Path, layer: str | None, scale: float) -> dict[str, Any]:
+def _of_points(path: Path, layer: str | Sequence[str] | None, scale: float) -> dict[str, Any]:
     """The boundary of a list of points, which has no layers."""
     if layer is not None:
         raise ProblemError(Issue(path=("layer",), message="a list of points has no layers; leave it out"))
@@ -217,40 +219,44 @@ def _drawing(path: Path) -> Any:
         raise ProblemError(f"{path} is no drawing in DXF: {error}") from None
 
 
-def drawn_pieces(drawing: Any, layer: str | None, scale: float) -> list[DrawnPiece]:
-    """The pieces of a drawing, of all layers or of one."""
-    pieces = [piece for entity in drawing.modelspace() for piece in _pieces(entity, scale)]
-    layers = [*dict.fromkeys(piece.layer for piece in pieces)]
-    if layer is not None and layer not in layers:
-        there = ", ".join(layers) or "none"
-        raise ProblemError(
-            Issue(path=("layer",), message=f"the drawing has no outline on the layer '{layer}'; there are: {there}")
-        )
-    found = [piece for piece in pieces if layer in (None, piece.layer)]
-    if not found:
+def drawn_pieces(drawing: Any, layer: str | Sequence[str] | None, scale: float) -> list[DrawnPiece]:
+    """The pieces of a drawing, of all layers, of some, or of one, whose name they do not have."""
+    entities = [*_entities(drawing.modelspace())]
+    layers = [*dict.fromkeys(name for _, name in entities)]
+    wanted = layers if layer is None else [layer] if isinstance(layer, str) else layer
+    for name in wanted:
+        if name not in layers:
+            message = f"the drawing has no outline on the layer '{name}'; there are: {', '.join(layers) or 'none'}"
+            raise ProblemError(Issue(path=("layer",), message=message))
+    pieces = [piece for entity, name in entities if name in wanted for piece in _pieces(entity, name, scale)]
+    if not pieces:
         raise ProblemError("the drawing has no lines, arcs, circles, ellipses, splines or polylines")
-    return [piece if layer is None else replace(piece, layer="0") for piece in found]
+    return [replace(piece, layer="0") for piece in pieces] if isinstance(layer, str) else pieces
 
 
-def _pieces(entity: Any, scale: float) -> Iterator[DrawnPiece]:
-    """The pieces of an entity of a drawing."""
+def _entities(entities: Iterable[Any], around: str = "0") -> Iterator[tuple[Any, str]]:
+    """Single entities and their layers; in a block the layer 0 is that of the block."""
+    for entity in entities:
+        kind, layer = entity.dxftype(), around if entity.dxf.layer == "0" else entity.dxf.layer
+        if kind in ("LWPOLYLINE", "POLYLINE", "INSERT"):
+            yield from _entities(entity.virtual_entities(), layer)
+        elif kind not in IGNORED:
+            yield entity, layer
+
+
+def _pieces(entity: Any, layer: str, scale: float) -> Iterator[DrawnPiece]:
+    """The pieces of a single entity."""
     kind, dxf = entity.dxftype(), entity.dxf
-    if kind in IGNORED:
-        return
-    if kind in ("LWPOLYLINE", "POLYLINE", "INSERT"):
-        for part in entity.virtual_entities():
-            yield from _pieces(part, scale)
-        return
     if kind == "LINE":
-        yield DrawnPiece(start=_point(dxf.start, scale), end=_point(dxf.end, scale), layer=dxf.layer, shape={})
+        yield DrawnPiece(start=_point(dxf.start, scale), end=_point(dxf.end, scale), layer=layer, shape={})
         return
     if kind == "SPLINE":
-        yield from _spline_pieces(entity, scale)
+        yield from _spline_pieces(entity, layer, scale)
         return
     if kind not in ("ARC", "CIRCLE", "ELLIPSE"):
         raise ProblemError(
-            f"the drawing has an entity {kind} on the layer '{dxf.layer}', which is no line, arc, ellipse or spline; "
-            "convert it to a polyline with arcs, or leave its layer out"
+            f"the drawing has an entity {kind} on the layer '{layer}', which is no line, arc, ellipse or spline; "
+            "convert it to a polyline with arcs, or name the other layers in layer"
         )
     mirrored = dxf.extrusion.z < 0
     if kind == "ELLIPSE":
@@ -268,14 +274,14 @@ def _pieces(entity: Any, scale: float) -> Iterator[DrawnPiece]:
         first, last = (0.0, 360.0) if kind == "CIRCLE" else (dxf.start_angle, dxf.end_angle)
         last += 360.0 * (last <= first)
         first, last = (180 - first, 180 - last) if mirrored else (first, last)
-    piece = DrawnPiece(start=0j, end=0j, layer=dxf.layer, shape=shape, angles=(first, last))
+    piece = DrawnPiece(start=0j, end=0j, layer=layer, shape=shape, angles=(first, last))
     ends = [piece.points()[0], replace(piece, angles=(last, first)).points()[0]]
     yield replace(piece, start=ends[0], end=ends[0] if piece.closed else ends[1])
 
 
-def _spline_pieces(entity: Any, scale: float) -> Iterator[DrawnPiece]:
+def _spline_pieces(entity: Any, layer: str, scale: float) -> Iterator[DrawnPiece]:
     """The smooth curves of a spline (NURBS) between its corners, through points of it."""
-    layer, curve = entity.dxf.layer, entity.construction_tool()
+    curve = entity.construction_tool()
     every = curve.knots()
     begin, end = every[curve.degree], every[curve.count]  # knots beyond belong to no place of the curve
     knots = [knot for knot in every if begin <= knot <= end]
@@ -319,8 +325,7 @@ def boundary_of(pieces: Sequence[DrawnPiece], name: str) -> dict[str, Any]:
             max(p.imag for p in every) - min(p.imag for p in every),
         )
     )
-    loops = [[piece] for piece in pieces if piece.closed]
-    loops += _chained([piece for piece in pieces if not piece.closed], JOINED * size, name)
+    loops = _chained(pieces, JOINED * size, name)
     loops = sorted((_oriented(loop) for loop in loops), key=lambda loop: -abs(_area(loop)))
     loops = [loop if number == 0 else [piece.turned for piece in reversed(loop)] for number, loop in enumerate(loops)]
     loops = [_from_lowest(loop) for loop in loops]
@@ -348,7 +353,8 @@ def _chained(pieces: Sequence[DrawnPiece], tolerance: float, name: str) -> list[
             raise ProblemError(f"{name} has a line without length at {_words(piece.start)}; remove it")
         ends.append((_node(piece.start, nodes, tolerance), _node(piece.end, nodes, tolerance)))
     _ensure_closed(pieces, ends, nodes, tolerance, name)
-    left, loops = set(range(len(pieces))), list[list[DrawnPiece]]()
+    loops = [[piece] for piece in pieces if piece.closed]
+    left = {number for number, piece in enumerate(pieces) if not piece.closed}
     while left:
         first = min(left)
         left.discard(first)
@@ -383,15 +389,17 @@ def _ensure_closed(
         for other, its in zip(pieces[:i], ends[:i], strict=True):
             middle, there = _middle(piece), _middle(other)
             if {*own} == {*its} and abs(middle - there) <= tolerance:
-                issues.append(f"two pieces lie on each other at {_words(middle)}; remove one of them")
+                issues.append(
+                    f"two pieces lie on each other at {_words(middle)}; remove one of them{_without(piece, pieces)}"
+                )
+    joints = {end for piece, pair in zip(pieces, ends, strict=True) if not piece.closed for end in pair}
     for number, node in enumerate(nodes):
-        count = sum(end == number for pair in ends for end in pair)
-        if count == 1:
-            others = [other for j, other in enumerate(nodes) if j != number]
-            near = min(others, key=lambda other: abs(other - node), default=node)
+        meeting = [piece for piece, pair in zip(pieces, ends, strict=True) for end in pair if end == number]
+        if (count := len(meeting)) == 1:
+            near = min((nodes[j] for j in joints - {number}), key=lambda other: abs(other - node), default=node)
             issues.append(
                 f"the outline is open at {_words(node)}; the nearest other end is {abs(near - node):.3g} away, at "
-                f"{_words(near)}: join them"
+                f"{_words(near)}: join them, or remove what is no outline{_without(meeting[0], pieces)}"
             )
         elif count > 2 and not issues:
             issues.append(
@@ -399,6 +407,14 @@ def _ensure_closed(
             )
     if issues:
         raise ProblemError([Issue(path=(), message=f"{name}: {text}") for text in issues[:10]])
+
+
+def _without(piece: DrawnPiece, pieces: Sequence[DrawnPiece]) -> str:
+    """How to read a drawing without the layer of a piece; empty if there is no other layer."""
+    others = [layer for layer in dict.fromkeys(other.layer for other in pieces) if layer != piece.layer]
+    if not others:
+        return ""
+    return f", or leave out the layer '{piece.layer}': layer: [{', '.join(map(repr, others))}]"
 
 
 def _between(piece: DrawnPiece, start: complex, end: complex) -> DrawnPiece:

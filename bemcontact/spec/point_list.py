@@ -30,7 +30,7 @@ def boundary_of_points(path: Path, scale: float) -> dict[str, Any]:
     """The loops of a file with two coordinates in each line, the outer one first.
 
     Loops are separated by empty lines, in any order and direction. The last point may be the first again. A first line
-    without numbers is a header.
+    without any number is a header.
     """
     loops = [loop * scale for loop in _loops(path)]
     loops = [loop if _area(loop) > 0 else loop[::-1] for loop in loops]
@@ -56,9 +56,11 @@ def _loops(path: Path) -> list[Array]:
         try:
             x, y = map(float, words)
         except ValueError:
-            if number == 1:
+            numbers = [word for word in words if _is_number(word)]
+            if number == 1 and not numbers:
                 continue
             message = f"expected two numbers, x and y, with a comma or a blank between; found {line.strip()[:40]!r}"
+            message += "; the decimal sign is a point" if "," in line and len(numbers) == len(words) == 4 else ""
             raise ProblemError(f"{path}:{number}: {message}") from None
         if not np.isfinite([x, y]).all():
             raise ProblemError(f"{path}:{number}: expected finite numbers; found {line.strip()[:40]!r}")
@@ -72,6 +74,14 @@ def _loops(path: Path) -> list[Array]:
     if not closed:
         raise ProblemError(f"{path}: there are no points")
     return closed
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
 
 
 def _edges(loop: Array) -> list[Edge]:

@@ -1,5 +1,6 @@
 """Problems made in Python: changes of values, and errors that list every issue."""
 
+import numpy as np
 import pytest
 from messages import assert_each_states, assert_states
 
@@ -96,6 +97,38 @@ def test_edges_are_found_by_name():
         problem.edge("tap")
 
 
+@pytest.mark.parametrize(
+    ("edge", "axis", "words"),
+    [
+        ("top", "y", None),
+        ("axis", "x", None),
+        ("top", "x", "'top' is no straight edge along y, where … its image along x; write symmetry: y"),
+        ("axis", "y", "'axis' is no straight edge along x, where … its image along y; write symmetry: x"),
+        ("arc", "x", "'arc' is no straight edge along y, where … an edge that slides along y has displacement: {x: 0}"),
+    ],
+)
+def test_a_line_of_symmetry_is_a_straight_edge_across_its_axis(edge, axis, words):
+    """A body that goes on as its image along x ends at a line x = const."""
+    touching, surface = ("top", (0, 20)) if edge == "arc" else ("arc", (0, 0))
+    zone = {
+        "edges": [touching],
+        "surface": {"kind": "plane", "point": surface, "normal": (0, 1 if edge != "arc" else -1)},
+    }
+    changes = {"conditions": {edge: {"symmetry": axis}}, "contact_zones": {"foot": zone}}
+    if words is None:
+        assert Problem(**{**parts(), **changes}).conditions[edge].displacement.given == (axis,)
+        return
+    (issue,) = issues(**changes)
+    assert_states(issue, f"conditions.{edge}.symmetry: {words}")
+    of_body = {**parts(), **changes}
+    body = {key: of_body.pop(key) for key in ("boundary", "conditions", "material")}
+    zones = {"foot": {**zone, "edges": [f"disk/{touching}"]}}
+    with pytest.raises(ProblemError) as refused:
+        Problem(**{**of_body, "contact_zones": zones, "bodies": {"disk": body}})
+    (issue,) = refused.value.issues
+    assert_states(str(issue), f"bodies.disk.conditions.{edge}.symmetry: {words}")
+
+
 def test_unit_of_stress_needs_units_of_force_and_length():
     assert Units(length="cm", force="kN").stress == "kN/cm²"
     assert Units(length="cm").stress == ""
@@ -121,6 +154,23 @@ def test_with_value_makes_a_new_problem(path, value, found):
     problem = Problem(**parts())
     assert found(problem.with_value(path, value)) == value
     assert problem == Problem(**parts())
+
+
+def test_values_of_numpy_are_those_of_python():
+    """A loop over an array has them."""
+    problem = Problem(**parts())
+    for value in (np.int64(7), np.float32(7), np.array(7.0)):
+        assert problem.with_value("conditions.top.pressure", value) == problem.with_value("conditions.top.pressure", 7)
+    normal = "contact_zones.foot.surface.normal"
+    assert problem.with_value(normal, np.array([0, 2])) == problem.with_value(normal, [0, 2])
+
+
+def test_a_problem_does_not_change_and_says_what_to_do():
+    problem = Problem(**parts())
+    with pytest.raises(ProblemError, match=r"a Problem does not change; problem\.with_value\('name', 'x'\)"):
+        problem.name = "x"
+    with pytest.raises(ProblemError, match=r"a Material does not change; problem\.with_value\('….young_modulus', 5\)"):
+        problem.material.young_modulus = 5
 
 
 def test_values_that_must_agree_are_changed_at_once():

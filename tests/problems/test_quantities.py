@@ -28,6 +28,7 @@ UNITS = {"length": "mm", "force": "N"}
         (("material", "young_modulus"), "210 GPa", 210e3),
         (("material", "young_modulus"), "30e6 psi", 30e6 * 6894.757293168361e-6),
         (("materials", "steel", "young_modulus"), "210e3 N/mm²", 210e3),
+        (("material", "young_modulus"), "210e3N/mm2", 210e3),
         (("boundary", "outer", 0, "center", 1), "1 cm", 10.0),
         (("boundary", "outer", 0, "radius"), "0.5 in", 12.7),
         (("boundary", "outer", 1, "fillet"), "200 µm", 0.2),
@@ -53,7 +54,11 @@ UNITS = {"length": "mm", "force": "N"}
         (("loads", "gravity", "density"), "7850 kg/m^3", 7.85e-9),
         (("loads", "gravity", "acceleration", 1), "-9.81 m/s^2", -9810.0),
         (("loads", "centrifugal", "angular_velocity"), "3000 rpm", 100 * math.pi),
+        (("loads", "gravity", "density"), "7.85 g/cm3", 7.85e-9),
+        (("loads", "gravity", "acceleration", 1), "-9.81 m/s2", -9810.0),
         (("loads", "temperature", "expansion"), "12e-6 1/K", 12e-6),
+        (("loads", "temperature", "expansion"), "12e-6 /K", 12e-6),
+        (("loads", "temperature", "expansion"), "1.2e-5/K", 12e-6),
         (("loads", "temperature", "change"), "50 °C", 50.0),
         (("contacts", "a", "gap"), "-10 um", -0.01),
         (("bodies", "a", "shift", 0), "1 cm", 10.0),
@@ -82,7 +87,10 @@ def test_a_value_with_a_unit_is_its_number_in_the_units_of_the_problem(path, tex
     ("path", "text", "words"),
     [
         (("material", "young_modulus"), "5 mm", "expected a stress such as 210 GPa; found 5 mm"),
-        (("material", "young_modulus"), "210 GPA", "unknown unit 'GPA' in 210 GPA; write a stress such as 210 GPa"),
+        (("material", "young_modulus"), "210 GPA", "unknown unit 'GPA' in 210 GPA; did you mean GPa?"),
+        (("material", "young_modulus"), "2e5 n/MM2", "unknown unit 'n/MM2' in 200000 n/MM2; did you mean N/mm2?"),
+        (("material", "young_modulus"), "2 foo", "unknown unit 'foo' in 2 foo; write a stress such as 210 GPa"),
+        (("conditions", "top", "pressure"), "20 mPa", "mPa in 20 mPa is a thousandth of Pa; write 20 MPa"),
         (("conditions", "top", "pressure", "x"), "5 MPa", "expected a slope"),
         (("boundary", "outer", 0, "radius"), "5 deg", "expected a length such as 5 mm; found 5 deg"),
         (("boundary", "outer", 0, "angles", 0), "5 mm", "expected an angle such as 30 deg; found 5 mm"),
@@ -96,6 +104,15 @@ def test_a_value_of_another_dimension_is_refused_at_its_place(path, text, words)
     _, (issue,) = with_numbers({"units": UNITS, **stated})
     assert issue.path == path
     assert issue.message.startswith(words)
+
+
+def test_a_wrong_unit_of_a_single_force_is_one_error():
+    """A single force is a list of one: its place in the list does not matter."""
+    stated = {"units": UNITS, "conditions": {"top": {"force": {"y": "-200 N"}}}}
+    with pytest.raises(bemcontact.ProblemError) as refused:
+        bemcontact.problem(stated)
+    (issue,) = (issue for issue in refused.value.issues if issue.path[0] == "conditions")
+    assert issue.message == "expected a force per thickness such as 400 N/mm; found -200 N"
 
 
 def test_names_and_other_texts_stay_as_they_are():

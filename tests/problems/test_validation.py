@@ -2,6 +2,7 @@
 
 import pytest
 
+import bemcontact
 from bemcontact.errors import ProblemError
 from bemcontact.problems import Condition, Problem
 from bemcontact.problems.examples import homes
@@ -12,6 +13,27 @@ def test_a_key_in_the_wrong_place_is_told_where_it_belongs(key: str, place: str)
     """The places are those of the documented schema."""
     with pytest.raises(ProblemError, match=f"'{key}' belongs under {place}"):
         Problem(**{"name": "a", key: 1})
+
+
+@pytest.mark.parametrize(
+    ("edge", "words"),
+    [
+        (
+            {"kind": "spline", "points": [[0, 0], [1, 1], [2, 0]], "tangent": "end"},
+            "unknown key 'tangent' for kind: spline; ",
+        ),
+        ({"kind": "line", "start": [0, 0], "clockwise": True}, "unknown key 'clockwise' for kind: line; "),
+        ({"kind": "arc", "center": [0, 0], "diameter": 3}, "write radius, half of the diameter"),
+        ({"start": [0, 0], "fillet": 3}, "unknown key 'start'; a fillet has no place of its own"),
+        ({"start": [0, 0], "chamfer": 3}, "unknown key 'chamfer'; a chamfer is a line of its own"),
+    ],
+)
+def test_a_key_of_another_kind_of_edge_is_not_said_to_belong_where_it_stands(edge, words):
+    with pytest.raises(ProblemError) as refused:
+        Problem(**{"name": "a", "boundary": {"outer": [{"name": "edge", **edge}]}})
+    of_edge = [issue.message for issue in refused.value.issues if issue.path[:2] == ("boundary", "outer")]
+    assert any(words in message for message in of_edge)
+    assert not any("belongs under boundary.outer" in message for message in of_edge)
 
 
 def test_every_key_of_the_schema_is_found_where_its_mapping_has_it():
@@ -47,3 +69,37 @@ def test_words_of_others_for_a_condition_are_led_to_its_keys(word: str, words: s
 def test_words_of_others_at_the_top_are_led_to_their_places(word: str, words: str):
     with pytest.raises(ProblemError, match=words):
         Problem(**{word: 1})
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        ({"contact": {}}, "contact between bodies in contacts"),
+        ({"zones": {}}, "rigid surfaces is in contact_zones"),
+        ({"outline": {}}, "the outline is boundary: {outer: "),
+        ({"title": "a"}, "write name"),
+        ({"plane": "stress"}, "it belongs to material: {state: plane_stress"),
+        ({"mesh": {"size": 1}}, "a mesh is found for the accuracy"),
+        ({"material": {"G": 8e4}}, "E = 2 G (1 + ν)"),
+        ({"material": {"mu": 0.1}}, "contact is without friction"),
+        ({"contact_zones": {"foot": {"friction": 0.1}}}, "contact is without friction"),
+        ({"contact_zones": {"foot": {"target": {}}}}, "write surface: {kind: plane"),
+        ({"conditions": {"left": {"ux": 0}}}, "what holds an edge is displacement: {x: 0}"),
+        (
+            {"loads": {"top": {"pressure": 20}}},
+            "there are: gravity, centrifugal, temperature; loads on edges are in conditions",
+        ),
+    ],
+)
+def test_words_that_are_guessed_lead_to_the_keys(data, words):
+    with pytest.raises(ProblemError) as refused:
+        bemcontact.problem({"name": "a", **data})
+    assert any(words in issue.message for issue in refused.value.issues)
+
+
+def test_a_unit_under_a_misspelled_key_is_no_second_error():
+    """Under the key that is meant the unit is read."""
+    with pytest.raises(ProblemError) as refused:
+        bemcontact.problem({"name": "a", "material": {"young_modulos": "210 GPa", "poisson_ratio": 0.3}})
+    (message,) = (issue.message for issue in refused.value.issues if issue.path[0] == "material")
+    assert message == "unknown key 'young_modulos'; did you mean 'young_modulus'?"

@@ -130,7 +130,18 @@ def test_a_name_that_has_a_comma_is_a_name():
 
 @pytest.mark.parametrize(
     ("text", "hint"),
-    [("30%", "write 0.3"), ("0.5 %", "write 0.005"), ("3/10", "formulas"), ("2*(3+4)", "formulas"), ("1e-3", "quotes")],
+    [
+        ("30%", "write 0.3"),
+        ("0.5 %", "write 0.005"),
+        ("3/10", "formulas"),
+        ("2*(3+4)", "formulas"),
+        ("1e-3", "quotes"),
+        ("210 000", "write 210000 without blanks"),
+        ("210 000 MPa", "write 210000 without blanks"),
+        ("210,000 MPa", "write 210000 without a comma"),
+        ("0,5 mm", "the decimal sign is a point"),
+        ("5 kg", "write the number alone"),
+    ],
 )
 def test_a_number_in_another_form_is_told_how_to_write_it(text: str, hint: str):
     assert hint in number_hint(text)

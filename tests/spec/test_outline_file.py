@@ -168,6 +168,48 @@ def test_a_layer_and_a_scale_are_chosen(tmp_path):
         bemcontact.outline(file, layer="inner")
 
 
+def test_a_list_of_layers_leaves_out_what_is_no_outline_and_keeps_the_names(tmp_path):
+    """A center line of any kind may be on another layer; without the list the message says how to leave it out."""
+
+    def draw(space):
+        bracket(space)
+        space.add_line((-5, 10), (45, 10), dxfattribs={"layer": "center"})
+
+    file = drawing(tmp_path, draw)
+    boundary = Boundary(**bemcontact.outline(file, layer=["foot", "0", "top", "bore"]))
+    assert boundary == Boundary(**bemcontact.outline(drawing(tmp_path, bracket, name="bare.dxf")))
+    with pytest.raises(ProblemError, match=r"open at \(-5, 10\).*'center': layer: \['foot', '0', 'top', 'bore'\]"):
+        bemcontact.outline(file)
+    with pytest.raises(ProblemError, match="no outline on the layer 'inner'"):
+        bemcontact.outline(file, layer=["foot", "inner"])
+    (tmp_path / "a.yaml").write_text(SPEC % ("mm", ", layer: [foot, '0', top, bore]"), encoding="utf-8")
+    assert bemcontact.load(tmp_path / "a.yaml").boundary == boundary
+
+    def draw_without_end(space):
+        bracket(space)
+        space.add_xline((0, 10), (1, 0), dxfattribs={"layer": "center"})
+
+    file = drawing(tmp_path, draw_without_end)
+    assert Boundary(**bemcontact.outline(file, layer=["foot", "0", "top", "bore"])) == boundary
+    with pytest.raises(ProblemError, match=r"XLINE on the layer 'center'.*name the other layers in layer"):
+        bemcontact.outline(file)
+
+
+def test_what_a_block_has_on_layer_0_is_on_the_layer_of_the_block(tmp_path):
+    """So CAD programs show it. A part of a block on a layer of its own stays there."""
+
+    def draw(space):
+        half = space.doc.blocks.new("HALF")
+        half.add_lwpolyline([(0, 0), (4, 0), (4, 3)])
+        half.add_line((4, 3), (0, 3), dxfattribs={"layer": "top"})
+        for side in (1, -1):
+            space.add_blockref("HALF", (0, 0), dxfattribs={"layer": "wall", "xscale": side})
+
+    boundary = Boundary(**bemcontact.outline(drawing(tmp_path, draw)))
+    assert area(boundary) == pytest.approx(8 * 3, rel=1e-12)
+    assert sorted(edge.name for edge in boundary.edges) == ["top 1", "top 2", *(f"wall {i}" for i in range(1, 5))]
+
+
 SPEC = """
 name: bracket
 units: {length: %s, force: N}
@@ -197,6 +239,7 @@ def test_a_part_is_solved_without_any_coordinate_typed(tmp_path):
     [
         ("m", "", "5:18", "the drawing is in mm, and the problem in m; give scale: 0.001"),
         ("mm", ", layer: none", "5:35", "no outline on the layer 'none'"),
+        ("mm", ", layer: [foot, 0]", "5:35", "a layer is a text, or a list of texts; write it in quotes"),
         ("mm", ", scale: -1", "5:35", "scale is a number greater than 0"),
         ("mm", ", outer: []", "5:35", "the edges are those of the file"),
     ],
@@ -229,6 +272,14 @@ SIDES = (((0, 0), (4, 0)), ((4, 0), (4, 3)), ((4, 3), (0, 3)), ((0, 3), (0, 0)))
             "the outline is open at (0, 0); the nearest other end is 0.01 away, at (0, 0.01)",
         ),
         (box(*SIDES, SIDES[1]), "two pieces lie on each other at (4, 1.5); remove one of them"),
+        (
+            lambda space: [box(*SIDES)(space), *(space.add_circle((2, 1.5), 1) for _ in range(2))],
+            "two pieces lie on each other at (1, 1.5)",
+        ),
+        (
+            lambda space: [box(*SIDES)(space), space.add_circle((9, 9), 1)],
+            "outside the outer loop; move it inside, or make it one of the bodies",
+        ),
         (box(*SIDES, ((0, 0), (4, 3))), "3 ends meet at (0, 0)"),
         (box(*SIDES, ((2, 2), (2, 2))), "a line without length at (2, 2)"),
         (box(((0, 0), (4, 0)), ((4, 0), (0, 3)), ((0, 3), (4, 3)), ((4, 3), (0, 0))), "cross"),

@@ -82,7 +82,7 @@ BROKEN = {
         "young_modulus: 210 GPA",
         "4:18",
         "material.young_modulus",
-        ("unknown unit 'GPA'", "write a stress such as 210 GPa"),
+        ("unknown unit 'GPA'", "did you mean GPa?"),
     ),
     "decimal comma": Broken(
         "poisson_ratio: .3",

@@ -32,6 +32,16 @@ def test_a_problem_is_written_to_a_file(tmp_path):
     assert not (tmp_path / "none.yaml").exists()
 
 
+def test_an_edge_with_the_name_all_stays_one_edge():
+    """Without brackets the word means all edges."""
+    data = bemcontact.load(Path(__file__).parents[2] / "models" / "gallery" / "hertz_small.yaml").to_dict()
+    text = bemcontact.dumps(bemcontact.problem({key: value for key, value in data.items() if key != "variants"}))
+    problem = bemcontact.loads(text.replace("name: rim", "name: all").replace("edges: rim", "edges: [all]"))
+    assert problem.contact_zones["foot"].edges == ("all",)
+    assert bemcontact.loads(bemcontact.dumps(problem)) == problem
+    assert bemcontact.problem(problem.to_dict()) == problem
+
+
 def test_an_equal_problem_is_so_whatever_was_computed_from_it():
     one, other = (bemcontact.load(MODELS[0]) for _ in range(2))
     bemcontact.condense(one, accuracy=0.1)

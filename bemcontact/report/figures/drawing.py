@@ -41,15 +41,16 @@ def plot(shown_object: Any, axes: Axes | None, options: Mapping[str, Any]) -> Ax
     if axes is None:
         axes = pyplot.figure(layout="constrained").add_subplot()
     elif not isinstance(axes, Axes):
-        save = "; .plot().figure.savefig(…) writes a file" if isinstance(axes, str) else ""
-        raise OptionError(f"axes must be axes of matplotlib, or None; found {shown(axes)}{save}")
+        hint = "; .plot().figure.savefig(…) writes a file" if isinstance(axes, str) else ""
+        hint = f"; write what={axes!r}" if isinstance(axes, str) and axes in _pictures(shown_object) else hint
+        raise OptionError(f"axes must be axes of matplotlib, or None; found {shown(axes)}{hint}")
     draw(axes)
     return axes
 
 
 def _drawing(item: Any, options: dict[str, Any]) -> Callable[[Axes], None]:
     """How an object is drawn with some options, which are checked here."""
-    pictures = PICTURES[next(kind for kind in PICTURES if isinstance(item, kind))]
+    pictures = _pictures(item)
     default = next(iter(pictures))
     if isinstance(item, Result) and item.boundary is None:
         default = "pressure"
@@ -59,8 +60,8 @@ def _drawing(item: Any, options: dict[str, Any]) -> Callable[[Axes], None]:
     draw, takes = pictures[what]
     for name in options:
         if name not in takes:
-            choices = f"it takes {', '.join(takes)}" if takes else "it takes no option"
-            raise OptionError(f"the picture '{what}' has no option '{name}'; {choices}")
+            choices = ", ".join([*takes, "axes", "what"])
+            raise OptionError(f"the picture '{what}' has no option '{name}'; it takes {choices}")
     given = {name: value for name, value in options.items() if value is not None}
     if "zone" in given:
         _ensure_zone(given["zone"], _zones(item))
@@ -69,6 +70,11 @@ def _drawing(item: Any, options: dict[str, Any]) -> Callable[[Axes], None]:
     if isinstance(item, Result) and what in ("contact", "deformed") and item.boundary is None:
         raise ProblemError("the result of a condensed problem has no boundary to draw; solve the problem itself")
     return lambda axes: draw(axes, item, **given)
+
+
+def _pictures(item: Any) -> Mapping[str, tuple[Draw, tuple[str, ...]]]:
+    """The pictures of an object by name, the usual one first."""
+    return PICTURES[next(kind for kind in PICTURES if isinstance(item, kind))]
 
 
 def _zones(item: Any) -> Sequence[str]:

@@ -75,7 +75,9 @@ def test_axes_are_made_where_none_are_given():
         ("result", {"what": "stresses"}, "no picture 'stresses' of this; take one of contact, pressure, gap"),
         ("result", {"zone": "hand"}, "no contact zone 'hand'; take one of foot"),
         ("result", {"colour": 1}, "'contact' has no option 'colour'; it takes zone, stress"),
-        ("result", {"what": "deformed", "zone": "foot"}, "it takes no option"),
+        ("result", {"what": "deformed", "zone": "foot"}, "no option 'zone'; it takes axes, what"),
+        ("result", {"ax": None}, "no option 'ax'; it takes zone, stress, axes, what"),
+        ("result", {"axes": "pressure"}, "found 'pressure'; write what='pressure'"),
         ("result", {"stress": "shear"}, "no stress 'shear'; take one of"),
         (
             "result",
