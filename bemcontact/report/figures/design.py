@@ -35,7 +35,8 @@ def figures_of_design(design: GapDesign) -> dict[str, Figure]:
 def draw_relieved_pressure(axes: Axes, design: GapDesign) -> None:
     """Draw pressure over arc length, dashed without and solid with the profile.
 
-    The frame ends at three times the peak with the profile; a text gives a larger peak without it, and says if it is infinite.
+    The frame ends at three times the peak with the profile. A text gives a larger peak without it, and says if it is
+    infinite.
     """
     at, arc = _points(design)
     for number, (before, after) in enumerate(zip(design.before, design.after, strict=True)):
