@@ -136,7 +136,7 @@ class EdgeForce(SpecModel):
     width: Positive | None = None
     """The length of edge over which it is spread; all of the edge if left out."""
     at: Number | None = None
-    """The distance of the middle of this part from the start of the edge; the middle of the edge if left out."""
+    """The distance along the edge from its start to the middle of this part; the middle of the edge if left out."""
 
     @model_validator(mode="after")
     def _placed(self) -> Self:

@@ -335,7 +335,10 @@ def _translated(cls: type[BaseModel], details: ErrorDetails) -> Issue:
     if details["type"] == "model_type":
         found = f"such as {likely_mapping(cls, details['input'])}; found {described(details['input'])}"
         return Issue(path=path, message=f"expected a mapping with the keys {', '.join(cls.model_fields)}, {found}")
-    return Issue(path=path, message=_wrong_value(details, example_of(annotation_at(cls, path))))
+    message = _wrong_value(details, example_of(annotation_at(cls, path)))
+    if details["type"] == "float_type" and len(path) == 1 and not number_hint(details["input"]):
+        message += _to_give(cls, str(path[0]))
+    return Issue(path=path, message=message)
 
 
 FEW_HOMES = 2
@@ -391,8 +394,13 @@ def missing_keys(cls: type[BaseModel], data: Any, keys: Sequence[str]) -> Iterat
 
 def _missing(cls: type[BaseModel], key: str) -> str:
     """Say that a key is missing, and what to give for it: its description in the class."""
+    return f"missing{_to_give(cls, key)}"
+
+
+def _to_give(cls: type[BaseModel], key: str) -> str:
+    """Say what to give for a key: its description in the class; empty if it has none."""
     text = " ".join(attribute_docstrings(cls).get(key, "").split())
-    return f"missing; give {text[0].lower()}{text[1:].rstrip('.')}" if text else "missing"
+    return f"; give {text[0].lower()}{text[1:].rstrip('.')}" if text else ""
 
 
 def _wrong_value(details: ErrorDetails, example: str) -> str:

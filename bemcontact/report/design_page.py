@@ -9,7 +9,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.errors import ProblemError
-from bemcontact.modelling.gap_design.designed_gap import MEASURED, GapDesign
+from bemcontact.modelling.gap_design.designed_gap import MEASURED, GapDesign, LoadState
 from bemcontact.modelling.gap_design.relief import Relief
 from bemcontact.problems import Units
 from bemcontact.report.contact_words import units_of
@@ -83,11 +83,11 @@ def render(design: GapDesign, pictures: Mapping[str, bytes], relief: Relief | No
 
 def _headline(design: GapDesign, units: Units) -> Iterator[tuple[str, str, str]]:
     """Name, value and remark of the numbers at the head of the page."""
-    change = f"{100 * (design.peak / design.peak_before - 1):+.1f} %" if design.peak_before else ""
+    highest, before = (max(states, key=lambda state: state.peak) for states in (design.after, design.before))
     yield (
         "Peak pressure",
-        with_unit(number(design.peak), units.stress),
-        f"{number(design.peak_before)} before, {change}",
+        _peak(highest, units),
+        f"at the contact points; before: {_peak(before, units)}{_change(before, highest, ', ')}",
     )
     yield (
         "Lower bound of the goal",
@@ -105,6 +105,19 @@ def _headline(design: GapDesign, units: Units) -> Iterator[tuple[str, str, str]]
     largest = float(np.abs(profile).max())
     low, high = (number(zero_if_negligible(float(end), largest)) for end in (profile.min(), profile.max()))
     yield "Profile", with_unit(f"{low} to {high}", units.length), f"on {design.zone}"
+
+
+def _peak(state: LoadState, units: Units) -> str:
+    """Write the peak of a load state; one at a sharp edge is a number of the mesh."""
+    peak = with_unit(number(state.peak), units.stress)
+    return f"infinite in theory, {peak} on this mesh" if state.infinite else peak
+
+
+def _change(before: LoadState, after: LoadState, start: str = "") -> str:
+    """Write by how much the peak changes, after a start; empty if one of the two is no number of the body."""
+    if before.infinite or after.infinite or not before.peak:
+        return ""
+    return f"{start}{100 * (after.peak / before.peak - 1):+.1f} %"
 
 
 def _bounds(relief: Relief, units: Units) -> Iterator[tuple[str, str, str]]:
@@ -146,9 +159,9 @@ def _states(design: GapDesign, units: Units) -> Iterator[dict[str, str]]:
         acting = " + ".join(f"{number(factor)} {name}" for name, factor in factors if factor)
         yield {
             "name": f"{order}: {acting}" if acting else f"{order}",
-            "before": with_unit(number(before.peak), units.stress),
-            "after": with_unit(number(after.peak), units.stress),
-            "change": f"{100 * (after.peak / before.peak - 1):+.1f} %" if before.peak else "none",
+            "before": _peak(before, units),
+            "after": _peak(after, units),
+            "change": _change(before, after) or "none",
             "force": with_unit(number(force), units.line_force),
             "verdict": sentence_case(after.certificate.heading),
             "quality": "good" if after.certificate.certified else "bad",

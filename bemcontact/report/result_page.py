@@ -187,8 +187,8 @@ def _stresses(result: Result, units: Units) -> Iterator[tuple[str, str, str]]:
         yield INSIDE, _stress(largest.inside, units), _at(largest.inside, units, size)
     if (peak := largest.boundary) is not None:
         yield ON_BOUNDARY, _stress(peak, units), f"{_at(peak, units, size)} on {peak.edge}"
-    for label, why in largest.missing.items():
-        yield label, "none", why
+    for why in dict.fromkeys(largest.missing.values()):
+        yield "; ".join(label for label in largest.missing if largest.missing[label] == why), "none", why
     if len(largest.singular):
         places = [vector((x, y), scale=size) for x, y in largest.singular[:MOST_PLACES].tolist()]
         more = len(largest.singular) - len(places)

@@ -53,6 +53,7 @@ def test_displacement_along_one_axis_goes_with_traction_along_the_other():
         ({"symmetry": "x", "displacement": {"x": 1}}, "symmetry is displacement 0 along x"),
         ({"fixed": True, "pressure": 1}, "displacement cannot be given too"),
         ({"force": {"y": 1, "at": 2}}, "force[0]: a force at a place needs a width"),
+        ({"force": {"y": 1, "width": 1, "at": [2, 0]}}, "found a list of 2; give the distance along the edge from its"),
         ({"force": {"width": 2}}, "force[0]: the force is zero"),
         ({"force": -400}, "force: a force has a direction; write {y: -400}, or x"),
         ({"force": {"y": 1, "position": 10}}, "write at: 10, the distance of its middle from the start of the edge"),

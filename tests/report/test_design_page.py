@@ -74,6 +74,28 @@ def test_each_load_state_has_a_row_with_its_peaks():
     assert "Bound on the" not in text
 
 
+def test_a_peak_that_is_infinite_in_theory_is_no_number_of_the_body(design: GapDesign):
+    """A flat punch presses infinitely at its edges; of uncoupled points each has its overlap, and the peak is 3."""
+    (state,) = design.before
+    assert state.infinite
+    assert not design.after[0].infinite
+    text = read(render(design, {})).text
+    assert f"at the contact points; before: infinite in theory, {design.peak_before:.5g} MPa on this mesh" in text
+    assert "Without it, it is infinite in theory" in text
+    assert " %" not in design.words
+    assert not any(item.infinite for item in (*uncoupled().before, *uncoupled().after))
+    assert "at the contact points; before: 3, -50.0 %" in read(render(uncoupled(), {})).text
+    assert "goes from 3 to 1.5 (-50.0 %)" in uncoupled().words
+
+
+@pytest.mark.parametrize(("overlap", "infinite"), [((5, 1, 1), True), ((1, 1, 5), True), ((1, 5, 1), False)])
+def test_a_peak_is_infinite_only_where_it_rises_steeply_to_an_end(overlap: tuple[int, ...], infinite: bool):
+    """Without coupling the pressures are the overlaps."""
+    contact = CondensedContact.from_compliance(np.eye(3), -np.array(overlap, float))
+    states = design_gap(contact, Relief(lower=0, upper=0.1)).before
+    assert [state.infinite for state in states] == [infinite]
+
+
 def test_what_is_proved_and_what_is_not_is_said(design: GapDesign):
     """The bound of the worst load state, 1.5, is reached without coupling; and a mesh is never assessed."""
     proved = uncoupled()

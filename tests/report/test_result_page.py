@@ -176,3 +176,15 @@ def test_letters_of_all_pictures_have_one_size():
         render(rolled(), {"contact": b'<svg width="192.5pt"/>', "gap-1": b"<svg/>"}, None),
     )
     assert int(share) == 50
+
+
+def test_stresses_that_are_missing_for_one_reason_have_one_row():
+    """Between two tools, bending and compression have no largest stress inside, nor shear below one of them."""
+    missing = [result.largest_stresses().missing for result in cases().results.values()]
+    assert max(map(len, missing)) > 1
+    page = render(cases(), {}, None)
+    for reasons in missing:
+        for why in {*reasons.values()}:
+            labels = "; ".join(label for label in reasons if reasons[label] == why)
+            assert f">{labels}</td>" in page
+    assert page.count('data-label="Value">none</td>') == sum(len({*reasons.values()}) for reasons in missing)

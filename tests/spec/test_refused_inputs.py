@@ -145,6 +145,7 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
         ("{conditions: {top: {pressure: 1}}}", "{conditions: {top: {spring: {normal: 1}}}}"),
         ("conditions:\n", "spring: {bottom: 5}\nconditions:\n"),
         ("{pressure: 3}", "{force: {y: -120, at: 3}}"),
+        ("{pressure: 3}", "{force: {y: -120, width: 8, at: [20, 20]}}"),
         ("{pressure: 3}", "{force: {y: -120, at: 3, width: 8}}"),
         ("{pressure: 3}", "{force: {y: -120, at: 8, width: 8}}"),
         ("{pressure: 3}", "{pressure: {along: [[20, 1], [0, 3]]}}"),

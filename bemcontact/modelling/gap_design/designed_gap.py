@@ -21,6 +21,8 @@ from bemcontact.views import Tabular
 
 AGREED = 1e-6
 """Difference of the designed pressure from that of the contact state, over the peak, up to which they agree."""
+STEEP = 3.0
+"""Peak at an end of a zone, over the pressures at the two points beside it, above which it is taken for infinite."""
 SURFACES = {"spline": Spline, "polyline": Polyline}
 
 
@@ -69,6 +71,16 @@ class LoadState(WithHints):
     def peak(self) -> float:
         """The largest pressure [p]."""
         return self.contact.peak(self.pressure)
+
+    @property
+    def infinite(self) -> bool:
+        """Whether the peak rises steeply to an end of a zone, as at a sharp edge: then it is a number of the mesh."""
+        at = int(np.argmax(self.pressure))
+        own = self.contact.points_of_run(int(self.contact.run[at]))
+        if np.isfinite(self.contact.run_length[self.contact.run[at]]) or at not in own[[0, -1]]:
+            return False
+        beside = own[1:3] if at == own[0] else own[-3:-1]
+        return bool(self.pressure[at] > STEEP * self.pressure[beside].max(initial=0.0))
 
     def record(self) -> LoadStateRecord:
         """Return the JSON form of the state."""
@@ -181,6 +193,11 @@ class GapDesign(Leaf, Tabular):
         change = f" ({100 * (self.value / self.value_before - 1):+.1f} %)" if self.value_before > 0 else ""
         worst = f", the worst of {len(self.after)} load states" if len(self.after) > 1 else ""
         change_of_goal = f"{MEASURED[self.goal]} goes from {self.value_before:.5g} to {self.value:.5g}{change}{worst}."
+        if self.goal is Goal.PEAK and any(state.infinite for state in self.before):
+            change_of_goal = (
+                f"{MEASURED[self.goal]} is {self.value:.5g} with the profile{worst}. Without it, it is infinite in "
+                f"theory, as at a sharp edge, and {self.value_before:.5g} on this mesh."
+            )
         if self.proved_optimal:
             proof = "No profile within the bounds does better: the lower bound of the convex relaxation is met."
         else:

@@ -41,7 +41,7 @@ from bemcontact.report.figures.problem import (
 )
 from bemcontact.report.figures.stress import fill_with_stress
 from bemcontact.report.figures.surfaces import Surface, surfaces_of
-from bemcontact.report.figures.symbols import Name, covered_by, draw_arrows, draw_ground, place_names, settle
+from bemcontact.report.figures.symbols import BACKING, Name, covered_by, draw_arrows, draw_ground, place_names, settle
 from bemcontact.report.formatting import with_unit
 
 VISIBLE = 0.005
@@ -256,7 +256,7 @@ def sketch_contact(
             inked = [*loops, *covered_by(grounds), *symbols, *map(_inked, fans, tips)]
             place_names(axes, names, np.concatenate(inked), bodies, grounds)
         for text in axes.texts:
-            text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6})
+            text.set_bbox(BACKING)
 
     return write
 

@@ -41,7 +41,7 @@ def draw_deformed(axes: Axes, result: Result, stress: StressMeasure | None = Non
     known = (bar.value for bar in result.accuracy.bars if bar.quantity == "displacement")  # as the table has it
     most = next(known, None) or float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
     largest = with_unit(f"{most:.3g}", plain(units_of(result.contact).length))
-    title = f"deformed shape, {in_words(factor, [result])}\nlargest displacement {largest}; {marked}"
+    title = f"deformed shape, {in_words(factor, [result])}\nlargest displacement {largest}\n{marked}"
     axes.set_title(title, loc="left", fontsize=10)
 
 

@@ -35,7 +35,8 @@ def figures_of_design(design: GapDesign) -> dict[str, Figure]:
 def draw_relieved_pressure(axes: Axes, design: GapDesign) -> None:
     """Draw pressure over arc length, dashed without and solid with the profile.
 
-    The frame ends at three times the peak with the profile; a text gives a larger peak without it.
+    The frame ends at three times the peak with the profile. A text gives a larger peak without it, and says if it is
+    infinite.
     """
     at, arc = _points(design)
     for number, (before, after) in enumerate(zip(design.before, design.after, strict=True)):
@@ -46,7 +47,13 @@ def draw_relieved_pressure(axes: Axes, design: GapDesign) -> None:
     highest = min(design.peak_before, 3 * design.peak) or 1.0
     axes.set_ylim(-0.03 * highest, 1.08 * highest)
     if design.peak_before > highest:
-        axes.text(0.98, 0.95, f"up to {design.peak_before:.4g} without", ha="right", va="top", transform=axes.transAxes)
+        infinite = any(state.infinite for state in design.before)
+        up_to = (
+            f"infinite in theory without,\n{design.peak_before:.4g} on this mesh"
+            if infinite
+            else (f"up to {design.peak_before:.4g} without")
+        )
+        axes.text(0.98, 0.95, up_to, ha="right", va="top", transform=axes.transAxes)
     name_axis(axes.yaxis, labeled("pressure", units_of(design.before[0].contact).stress))
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(frameon=False, fontsize=8.5)

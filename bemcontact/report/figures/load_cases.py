@@ -134,11 +134,10 @@ def draw_case_stresses(places: Sequence[Axes], cases: CaseResults, shown: Sequen
     scale, marked = color_scale(results, stress, factor), {"dashed: undeformed": None}
     for axes, name, result in zip(places, shown, results, strict=True):
         draw_shape(axes, result, factor)
-        drawn, words = fill_body(axes, result, scale, factor)
-        title = short_label(name, 30)
-        if words == SAME:
-            title = f"{title}\n{words}"
-        else:
+        drawn, words, largest = fill_body(axes, result, scale, factor)
+        below = words if words == SAME else largest and f"largest {largest}"
+        title = f"{short_label(name, 30)}\n{below}".rstrip()
+        if words != SAME:
             marked[words] = None
         axes.set_title(title, loc="left", fontsize=9)
         if axes is places[-1]:

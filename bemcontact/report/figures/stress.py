@@ -15,9 +15,10 @@ from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.contact.stress import PointKind, TriangulatedBody
 from bemcontact.options import StressMeasure
 from bemcontact.report.contact_words import units_of
-from bemcontact.report.figures.page import BLACK, PowerInLabel, labeled
+from bemcontact.report.figures.page import BLACK, PowerInLabel, labeled, plain
 from bemcontact.report.figures.problem import polygons_of
 from bemcontact.report.figures.surfaces import bent
+from bemcontact.report.formatting import number, with_unit
 
 BESIDE = 0.1
 """Distance from an infinite stress over the size of what is shown within which no value sets the scale."""
@@ -25,7 +26,9 @@ UNSEEN = 0.003
 """Share of the area that is shown on which stress may be beyond the scale."""
 UNIFORM = 1e-6
 """Relative difference of stresses that is round-off."""
-SAME = "the stress is the same all over"
+SAME, LARGEST = "the stress is the same all over", "ring: largest stress"
+FIGURES = 2
+"""Digits of the largest stress that samples of it give."""
 LEVELS = 10
 """About as many levels of color."""
 COLOURS, BOTH_SIGNS = "viridis", "RdBu_r"
@@ -43,12 +46,12 @@ def fill_with_stress(
 
     Displacements are magnified by the factor. The colors are for what is inside the `window`, two corners (2, 2).
     Their scale is for all values but those on a small part of the area, and beside places where stress is infinite.
-    The words that are returned say what is marked.
+    The words that are returned say what is marked, and how large the largest is: colors end below it.
     """
     scale = color_scale([result], measure, factor, window)
-    drawn, words = fill_body(axes, result, scale, factor, window)
+    drawn, words, largest = fill_body(axes, result, scale, factor, window)
     add_bar([axes], drawn, result, scale)
-    return words
+    return f"{words}, {largest}" if largest else words
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,8 +84,11 @@ def color_scale(
 
 def fill_body(
     axes: Axes, result: Result, scale: ColorScale, factor: float = 1.0, window: Array | None = None
-) -> tuple[TriContourSet, str]:
-    """Fill and mark the body as `fill_with_stress` does, in given colors; return the contours, and what is marked."""
+) -> tuple[TriContourSet, str, str]:
+    """Fill and mark the body as `fill_with_stress` does, in given colors.
+
+    Return the contours, what is marked, and the largest stress in words if it is marked.
+    """
     body, points, values, shown, infinite = _stresses(result, scale.measure, factor, window)
     triangles = Triangulation(points[:, 0], points[:, 1], body.triangles)
     drawn = axes.tricontourf(
@@ -91,7 +97,12 @@ def fill_body(
     )  # fmt: skip
     drawn.set(edgecolor="face", linewidth=0.3)  # or the page is seen between two colors
     finite = shown & ~infinite
-    return drawn, _mark(axes, points[finite], np.abs(values[finite]), points[infinite & shown])
+    words = _mark(axes, points[finite], np.abs(values[finite]), points[infinite & shown])
+    if words != LARGEST:
+        return drawn, words, ""
+    largest = float(values[finite][np.abs(values[finite]).argmax()])
+    rounded = number(float(f"{largest:.{FIGURES}g}"))  # of samples, which may be a little below the largest
+    return drawn, words, f"about {with_unit(rounded, plain(units_of(result.contact).stress))}"
 
 
 def _stresses(
@@ -145,7 +156,7 @@ def _mark(axes: Axes, points: Array, sizes: Array, infinite: Array) -> str:
         at = int(np.argmax(sizes))
         if np.ptp(sizes) <= UNIFORM * sizes[at]:
             return SAME
-        words = "ring: largest stress"
+        words = LARGEST
         for color, width, order in (("white", 2.6, 5), (BLACK, 1.2, 6)):
             axes.plot(
                 *points[at], marker="o", markersize=8, markerfacecolor="none", markeredgecolor=color,

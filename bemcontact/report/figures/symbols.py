@@ -54,6 +54,8 @@ FREE_PLACES = 12
 """Number of nearest places in free space that are compared for a name."""
 COVERED = 1000.0
 """Weight of the share of a label that another one covers, against one drawn point."""
+BACKING = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6}
+"""What is behind a name that covers something, so that it can be read."""
 
 
 def centered(center: Array, size: tuple[float, float]) -> Box:
@@ -213,6 +215,8 @@ def place_names(
             text.remove()
             continue
         taken.append(centered(chosen, size))
+        if crowd(taken[-1], [], ink):
+            text.set_bbox(BACKING)
         text.set_position(_to_data(axes, chosen))
         named = to_page.transform(name.anchors if name.named is None else name.named)
         ends = _line_ends(named, chosen, size)

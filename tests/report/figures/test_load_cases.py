@@ -136,6 +136,7 @@ def test_each_panel_marks_the_largest_stress_or_those_that_are_infinite():
         same = name == "raised"  # a constant pressure
         assert bool(rings) != same
         assert ("the same all over" in axes.get_title(loc="left")) == same
+        assert ("about" in axes.get_title(loc="left")) != same
         assert not [line for line in axes.lines if line.get_marker() == "x" and len(line.get_xydata())]
         assert not (result.triangulated.stress.kind == PointKind.SINGULAR).any()
     cases = solved("eccentric_punch")

@@ -66,3 +66,16 @@ def test_no_place_is_marked_where_stress_is_the_same_all_over():
     axes = figure.add_subplot()
     assert figures.fill_with_stress(axes, result, StressMeasure.VON_MISES) == "the stress is the same all over"
     assert not axes.lines
+
+
+def test_the_largest_stress_is_written_where_colors_end_below_it():
+    """Under a roller of half-width 0.03 R it is 0.558 p₀ at Poisson's ratio 0.3 (Johnson 1985), to two digits."""
+    result = bemcontact.solve(bemcontact.load(MODELS / "gallery" / "hertz_small.yaml"))
+    axes = Figure().add_subplot()
+    words = figures.fill_with_stress(axes, result, StressMeasure.VON_MISES)
+    largest = float(f"{0.558 * result.peak.pressure:.2g}")
+    assert words == f"ring: largest stress, about {largest:g} MPa"
+    figures.draw_deformed(axes := Figure().add_subplot(), result, StressMeasure.VON_MISES)
+    assert axes.get_title(loc="left").splitlines()[-1] == words
+    (drawn,) = [item for item in axes.collections if isinstance(item, TriContourSet)]
+    assert drawn.levels[-1] < largest

@@ -146,3 +146,14 @@ def test_a_name_without_room_beside_it_stands_on_what_it_names_if_it_fits(fits: 
     )
     place_names(axes, [first, replace(first, text="number", area=area)], NOTHING, [])
     assert (axes.texts[1].get_position() == pytest.approx((5, 4))) == fits
+
+
+def test_a_name_that_covers_what_is_drawn_has_a_backing():
+    """Arrows fill the page in one picture, and none is drawn in the other."""
+    for ink in (NOTHING, np.random.default_rng(1).uniform(0, 10, (1000, 2))):
+        axes = new_page(5.0, 5.0).add_subplot()
+        axes.set(xlim=(0, 10), ylim=(0, 10))
+        settle(axes)
+        name = Name(text="load", color="black", anchors=np.array([[5.0, 5.0]]), directions=np.array([[0.0, 1.0]]))
+        place_names(axes, [name], ink, [])
+        assert (axes.texts[0].get_bbox_patch() is not None) == bool(len(ink))
