@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Never, Self
 
 from pydantic import (
     AfterValidator,
@@ -67,6 +67,23 @@ def issues_of(error: ValidationError) -> list[Issue]:
     return [_issue(details) for details in error.errors(include_url=False, include_input=False)]
 
 
+class Fixed(dict[str, Any]):
+    """A mapping of a problem, which does not change: what would be put into it has to be checked with the rest."""
+
+    def _refuse(self, *_: object, **__: object) -> Never:
+        """Say what to do instead."""
+        raise ProblemError(
+            "the mappings of a problem do not change; problem.with_value('conditions.top.pressure', 5) makes a problem "
+            "with another value, and bemcontact.problem one of a mapping such as problem.to_dict() with more keys"
+        )
+
+    __setitem__ = __delitem__ = __ior__ = update = setdefault = pop = popitem = clear = _refuse  # pyright: ignore
+
+    def __reduce__(self) -> tuple[type[Self], tuple[dict[str, Any]]]:
+        """Copies and pickles make it of its items, and put none in."""
+        return type(self), (dict(self),)
+
+
 class SpecModel(BaseModel):
     """Base class of all parts of a problem: frozen, strict about types; `ProblemError` lists every issue at once."""
 
@@ -102,13 +119,17 @@ class SpecModel(BaseModel):
     def _translate_errors(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         """Translate the errors of pydantic for the keys of this class; nested parts have translated their own."""
         try:
-            return handler(data)
+            part = handler(data)
         except ValidationError as error:
             issues = [*_translated_errors(cls, error), *_below_misspelled(cls, data, handler)]
             nameless = _nameless(cls, data)
             issues = [issue for issue in issues if issue.path[:1] not in [(key,) for key in nameless]]
             issues += [Issue(path=(key,), message=message) for key, message in nameless.items()]
             raise validation_error(cls.__name__, issues) from None
+        for key in cls.model_fields:
+            if type(value := part.__dict__.get(key)) is dict:
+                object.__setattr__(part, key, Fixed(value))
+        return part
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Refuse to change a key, and say what to do instead."""

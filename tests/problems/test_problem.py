@@ -1,5 +1,8 @@
 """Problems made in Python: changes of values, and errors that list every issue."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 from messages import assert_each_states, assert_states
@@ -171,6 +174,21 @@ def test_a_problem_does_not_change_and_says_what_to_do():
         problem.name = "x"
     with pytest.raises(ProblemError, match=r"a Material does not change; problem\.with_value\('….young_modulus', 5\)"):
         problem.material.young_modulus = 5
+
+
+def test_mappings_of_a_problem_do_not_change():
+    """What is put into one would not be checked; copies and pickles are equal to it, and a union is a new mapping."""
+    stated = Problem(**parts())
+    for change in (
+        lambda: stated.conditions.update(top=5),
+        lambda: stated.contact_zones.pop("table", None),
+        lambda: stated.load_cases.clear(),
+    ):
+        with pytest.raises(ProblemError, match=r"do not change; problem\.with_value"):
+            change()
+    for other in (copy.deepcopy(stated), pickle.loads(pickle.dumps(stated)), Problem(**stated.to_dict())):
+        assert other == stated
+    assert {**stated.conditions, "top": 5} == stated.conditions | {"top": 5}
 
 
 def test_values_that_must_agree_are_changed_at_once():
