@@ -27,7 +27,7 @@ INTENSITY, INTENSITY_FLOOR = 3.0, 5.0
 UNKNOWN_EXPONENT = 0.01
 """Least error of the intensity if its exponent is measured."""
 NOTHING = 1e-9
-"""Motion or difference over the largest displacement, or coordinate over the size of the body, that is round-off."""
+"""Motion or difference over the largest displacement that is round-off."""
 
 LEAST_POINTS = 5
 """Points in contact in an interval, those of two elements, below which bisecting elements does not tell the error."""
@@ -150,18 +150,12 @@ def _farthest(solved: Solved, answer: CaseAnswer) -> tuple[float, float] | None:
     """Node that is displaced most; None if there are several of this kind, or if none is."""
     moved = np.hypot(*np.moveaxis(answer.displacement, 2, 0))
     nodes = np.unique(solved.mesh.nodes[solved.mesh.elements[moved >= (1 - NOTHING) * moved.max()]], axis=0)
-    return _written(solved, nodes[0].tolist()) if len(nodes) == 1 else None
+    return solved.mesh.place(nodes[0]) if len(nodes) == 1 else None
 
 
 def _place(solved: Solved, singularity: Singularity) -> tuple[float, float]:
     """Place of an infinite pressure [L]."""
-    return _written(solved, solved.run(singularity.place.run).point(singularity.place.position))
-
-
-def _written(solved: Solved, place: Sequence[float]) -> tuple[float, float]:
-    """The place (x, y) [L], with zero for what is round-off beside the body."""
-    x, y = (value if abs(value) > NOTHING * solved.mesh.size else 0.0 for value in place)
-    return x, y
+    return solved.mesh.place(solved.run(singularity.place.run).point(singularity.place.position))
 
 
 def _motion_bars(estimate: _Estimate, m: float, largest: float) -> Iterator[ErrorBar]:
@@ -337,7 +331,7 @@ def _end_bars(estimate: _Estimate, name: str, m: float) -> Iterator[ErrorBar]:
                     bar = max(estimate.bar(change), estimate.factor * run.element_at(position) / 2 / length)
                     note = ""
                 errors.append(bar)
-                at = _written(solved, run.point(position))
+                at = solved.mesh.place(run.point(position))
                 yield ErrorBar(quantity=which, zone=name, interval=count, value=position, bar=bar, at=at, note=note)
             both = None if None in errors else sum(filter(None, errors))
             why = note if both is None else ""

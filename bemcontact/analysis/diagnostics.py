@@ -202,7 +202,7 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
         node, other = points.node[i], points.opposite.node[i]
         if other >= 0 and abs(angles[other] - np.pi) >= CORNER:
             continue
-        x, y = mesh.nodes[node]
+        x, y = mesh.place(mesh.nodes[node])
         reached = f"contact reaches the end of the zone '{_zone(body, i)}' at ({x:.5g}, {y:.5g})"
         if abs(angles[node] - np.pi) < CORNER:
             zone = _zone(body, i)
@@ -242,7 +242,7 @@ def long_neighbors(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
         after, before = points.node[i], mesh.before[points.node[i]]
         outside, inside = (before, after) if in_zone[after] else (after, before)
         if not in_zone[outside] and lengths[outside] > LONG_NEIGHBOR * lengths[inside]:
-            (x, y), times = mesh.nodes[points.node[i]], lengths[outside] / lengths[inside]
+            (x, y), times = mesh.place(mesh.nodes[points.node[i]]), lengths[outside] / lengths[inside]
             yield (
                 f"pressure acts at ({x:.5g}, {y:.5g}), the end of the zone '{_zone(body, i)}', beyond which an element "
                 f"of '{mesh.edge_names[mesh.edge[outside]]}' is {times:.2g} times as long as that in the zone: the "
@@ -259,7 +259,7 @@ def beyond_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
         pressed = body.mesh.nodes[points.node[touching & (points.zone == number)]]
         beyond = pressed[zone.surface.beyond_ends(zone.surface.way.back(pressed))] if len(pressed) else pressed
         if len(beyond):
-            x, y = beyond[0]
+            x, y = body.mesh.place(beyond[0])
             yield (
                 f"contact in {name} at ({x:.5g}, {y:.5g}) is with the straight continuation of its {zone.surface.kind} "
                 "beyond its first or last point: the line has no ends; if the surface ends there, add a point that "

@@ -148,7 +148,7 @@ def _strained(
         return None
     _, i, share = max(found)
     E = _softest(body, i)
-    (x, y), zone = contact.points[i].tolist(), contact.zone_names[contact.zone[i]]
+    (x, y), zone = body.mesh.place(contact.points[i]), contact.zone_names[contact.zone[i]]
     element = body.points.element[np.flatnonzero(body.points.point == i)[0]]
     return Penetration(
         kind=Misfit.NOT_SMALL, depth=float(strain[i]), allowed=LARGE, at=(x, y),

@@ -25,6 +25,8 @@ CONTRADICTION = 1e-9
 """Difference of two prescribed displacements at one corner, relative to the largest one, from which they contradict."""
 STOP = 1e-9
 """Distance over the length of an edge up to which an element ends at a jump of a load: round-off."""
+ROUND_OFF = 1e-9
+"""Coordinate over the size of a mesh that is round-off."""
 CORNER = 0.2
 """Angle [rad], or its sine, by which the boundary turns from which it has a corner."""
 
@@ -108,6 +110,11 @@ class Mesh:
     def size(self) -> float:
         """Diameter of the bounding box [L]."""
         return float(np.hypot(*np.ptp(self.nodes, axis=0)))
+
+    def place(self, point: Sequence[float] | Array) -> tuple[float, float]:
+        """Return a point as (x, y) [L] for a sentence, with zero for what is round-off beside the size of the mesh."""
+        x, y = (float(value) if abs(value) > ROUND_OFF * self.size else 0.0 for value in point)
+        return x, y
 
     @cached_property
     def centroid(self) -> Array:

@@ -25,3 +25,14 @@ def test_inner_angles_are_those_of_the_body():
     slope = np.arctan2(4, 3)
     corners = [np.pi / 2, slope, np.pi / 2 - slope, *[3 * np.pi / 2] * 4]
     assert mesh.build(problem).inner_angles == pytest.approx(np.ravel([(corner, np.pi) for corner in corners]))
+
+
+def test_a_place_in_a_sentence_has_no_round_off():
+    """Below the middle of an arc from 180 to 360 degrees x is zero; a thousandth of the size is not."""
+    arc = {"name": "dome", "kind": "arc", "center": [0, 0], "radius": 4, "angles": [180, 360], "elements": 8}
+    edges = [arc, {"name": "foot", "elements": 2}]
+    zones = {"lid": {"edges": "dome", "surface": {"kind": "plane", "point": [0, -4], "normal": [0, 1]}}}
+    made = {"name": "dome", "material": {"young_modulus": 1, "poisson_ratio": 0.3}, "boundary": {"outer": edges}}
+    built = mesh.build(Problem.model_validate({**made, "contact_zones": zones}))
+    assert built.place(built.nodes[np.argmin(built.nodes[:, 1])]) == (0.0, -4.0)
+    assert built.place([1e-14, 0.004]) == (0.0, 0.004)

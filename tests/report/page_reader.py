@@ -3,7 +3,7 @@
 import re
 from html.parser import HTMLParser
 
-EMPTY = {"meta", "link", "img", "br", "hr", "input"}
+EMPTY = {"meta", "link", "img", "br", "hr", "input", "wbr"}
 """Elements without an end."""
 
 

@@ -9,7 +9,12 @@ from playwright.sync_api import Browser
 from reproductions import on_base_meshes
 from results import designed, followed
 
-from bemcontact.report import folder
+from bemcontact.problems.units import Units
+from bemcontact.report import folder, study_page
+from bemcontact.studies.axes import axes_of
+from bemcontact.studies.outputs import Reading
+from bemcontact.studies.rows import MemberRow, MemberStatus
+from bemcontact.studies.table import StudyTable
 
 pytestmark = pytest.mark.skipif(executable() is None, reason="there is no Chromium on this machine")
 
@@ -18,6 +23,9 @@ RESULTS = ("roller", "punch", "cases")
 PAGES = {"path": (folder.save_path, followed, "path.html"), "design": (folder.save_design, designed, "design.html")}
 PAPER = "paper"
 """The page of the paper's problems, beside those of mesh studies, results, paths and designs."""
+
+ON_PAPER = 673
+"""Width of a page of A4 without its margins of 16 mm, in pixels of CSS."""
 
 PICTURES = """
 Promise.all([...document.images].map(image => image.decode().then(() => image.naturalWidth * image.width)))
@@ -162,6 +170,25 @@ def test_a_long_number_is_not_cut_on_a_telephone(chromium: Browser, written: Cal
         cells, cut = page.evaluate(CUT_CELLS)
     assert cells > 10
     assert cut == 0
+
+
+def test_a_long_note_of_a_study_makes_no_tall_row_and_the_table_fits_on_paper(chromium: Browser, tmp_path: Path):
+    """Six columns leave no room for a note of 30 words; it had a column of one word, and paper cut it off."""
+    outputs = tuple(f"output_{number}" for number in range(5))  # as many as are shown by default
+    one = MemberRow(
+        number=0, values={"conditions.top.pressure": 10.0}, status=MemberStatus.HOLDS, equations="", certified=True,
+        met=True, mesh_error=0.002, message="a note of many words " * 6,
+        outputs={name: Reading(value=100.0, error=0.1) for name in outputs},
+    )  # fmt: skip
+    axes = axes_of({"conditions.top.pressure": [10.0]}, Units())
+    study = StudyTable(name="study", units=Units(length="mm", force="N"), axes=axes, outputs=outputs, rows=(one,))
+    place = tmp_path / "study.html"
+    place.write_text(study_page.render(study, {}, None), encoding="utf-8")
+    with opened(chromium, place, width=1200) as (page, _):
+        assert page.evaluate("document.querySelector('.members tbody tr').clientHeight") < 120
+        page.set_viewport_size({"width": ON_PAPER, "height": 900})
+        page.emulate_media(media="print")
+        assert page.evaluate("document.documentElement.scrollWidth") == ON_PAPER
 
 
 @pytest.mark.slow
