@@ -41,7 +41,7 @@ JUMPS = 10.0
 """How much more a peak may change where the curvature of an outline jumps: there the gap as drawn has a corner."""
 ROUND_OFF = 1e-9
 """Distance of two lines of symmetry over the size of the bodies, up to which they are one; motion that is none."""
-MOST_STEPS = 5
+MOST_STEPS = 12
 """Steps in which the pairs have to come to rest."""
 SLOWEST = 0.5
 """Largest ratio of two changes of the pairs: a body that nothing holds moves on and on."""
@@ -118,12 +118,12 @@ def after_motion(answer: Solved) -> tuple[Problem, float]:
     problem = answer.body.problem
     if not may_move(problem):
         return problem, 0.0
-    (case,), ways, change = answer.answers, dict[str, Way](), 0.0
-    least = RESTING * _judged_to(problem)
-    for name, way, of_peak in (*_ways_of_pairs(answer.body, case), *_ways_of_rigid(answer.body, case)):
-        if of_peak > least:
-            ways[name], change = way, max(change, of_peak)
-    return problem.after_motions(ways), change
+    (case,) = answer.answers
+    found = [*_ways_of_pairs(answer.body, case), *_ways_of_rigid(answer.body, case)]
+    change = max((of_peak for _, _, of_peak in found), default=0.0)
+    if change <= RESTING * _judged_to(problem):
+        return problem, 0.0
+    return problem.after_motions({name: way for name, way, _ in found}), change
 
 
 def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:
