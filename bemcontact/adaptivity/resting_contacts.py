@@ -174,18 +174,19 @@ def _ways_of_rigid(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Way, flo
         spread = np.sqrt(force @ (motion - mean) ** 2 / force.sum())
         still = abs(motion).min(axis=0) <= ROUND_OFF * abs(motion).max()  # as at a line of symmetry
         x, y = (step - np.where(still | (abs(mean) <= AS_A_WHOLE * spread), mean, 0.0)).tolist()
-        way, found = spin._replace(x=x, y=y), list[Faces]()
+        way, found, moments = spin._replace(x=x, y=y), list[Faces](), list[float]()
         for item in (surface, surface.after(way)):
             faces, moved = item.faces(places, inward[at], reach[at]), steps + spin.motion_at(places - item.way.step)
             found.append(faces._replace(gap=faces.gap - np.einsum("ksx,kx->ks", faces.normals, moved)))
+            moments.append(float(force @ cross(places - item.way.step - about, faces.normals[:, 1])))
         now, there = found
         off = float(abs(there.gap - now.gap).max()) / scale
         turned = 0.0 if _is_straight(surface) else float(np.hypot(*(there.normals - now.normals).T).max())
         part = max(off, turned) / 2
         part *= JUMPS if isinstance(surface, BodySurface) else 1.0
         if any(tool.free[2] for tool in body.problem.tools.values() if name in tool.zones):
-            across = abs(cross(force @ now.normals[:, 1], way.step - surface.way.step)) / force.sum()
-            part = max(part, float(across) / contact.weights[beside][force > 0].sum())
+            lever = abs(moments[1] - moments[0]) / force.sum()
+            part = max(part, lever / contact.weights[beside][force > 0].sum())
         yield name, way, part
 
 

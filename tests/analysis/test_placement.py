@@ -412,19 +412,16 @@ def flat_tool_on_a_dome(moment, height, **along):
 
 @pytest.mark.parametrize("moment", [100.0, 300.0])
 def test_a_flat_tool_that_rolls_on_a_dome_is_held(moment):
-    """It turns by M/(F R) until it touches beside the top; it is lifted by a square of that, which is no motion.
+    """It turns until it touches beside the top; it is lifted by a square of that, which is no motion.
 
-    Its force turns with it: the moment gains the height of the pivot, a seventh of R, which is a change of a seventh.
-    So the place of contact is off by a seventh of R times the angle, which is said.
+    Its force turns with it: the moment gains the height of the pivot, h = R / 7, and the angle is M/(F (R + h)).
     """
     problem, R = flat_tool_on_a_dome(moment, 1 / 7, displacement={"x": 0})
     result = solve(problem)
     angle = result.contact.tools.displacement(result.solution.rigid_amplitudes)[0, 2]
-    assert angle == pytest.approx(moment / (500 * R), rel=0.03)
+    assert angle == pytest.approx(moment / (500 * R * (1 + 1 / 7)), rel=0.003)
     assert result.certified
-    (told,) = (float(found[1]) for note in result.notes if (found := re.search(r"elsewhere by ([\d.e+-]+) %", note)))
-    touching = result.footprint.intervals[0]
-    assert told / 100 == pytest.approx(R * angle / 7 / np.ptp(touching.arc), rel=0.15)
+    assert not any("elsewhere by" in note for note in result.notes)
 
 
 @pytest.mark.parametrize(("moment", "certified"), [(10.0, True), (40.0, True), (300.0, False)])
