@@ -182,7 +182,7 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
             if number == 1 and (there := with_resting_contacts(coarse, condensed)) is not coarse:
                 search = MeshSearch.of(problem.on_contacts_of(there.body.problem))
                 coarse = search.fitted(MOST_UNKNOWNS, tell)
-            if number == 1 and after_motion(coarse)[1]:
+            elif number == 1 and after_motion(coarse)[1]:
                 steps = 0  # contacts never come to rest
             if 2 * coarse.counted_unknowns > MOST_UNKNOWNS:
                 reason = f"a finer mesh would have more than {MOST_UNKNOWNS} unknowns"

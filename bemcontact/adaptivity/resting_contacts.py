@@ -41,7 +41,7 @@ JUMPS = 10.0
 """How much more a peak may change where the curvature of an outline jumps: there the gap as drawn has a corner."""
 ROUND_OFF = 1e-9
 """Distance of two lines of symmetry over the size of the bodies, up to which they are one; motion that is none."""
-MOST_STEPS = 5
+MOST_STEPS = 12
 """Steps in which the pairs have to come to rest."""
 SLOWEST = 0.5
 """Largest ratio of two changes of the pairs: a body that nothing holds moves on and on."""
@@ -118,11 +118,10 @@ def after_motion(answer: Solved) -> tuple[Problem, float]:
     problem, change = answer.body.problem, 0.0
     least, shared = RESTING * _judged_to(problem), has_cases(problem)
     for name, case in zip(problem.case_names if shared else (None,), answer.answers, strict=True):
-        found = (*(() if shared else _ways_of_pairs(answer.body, case)), *_ways_of_rigid(case))
-        ways = {zone: way for zone, way, of_peak in found if of_peak > least}
-        change = max(change, *(of_peak for zone, _, of_peak in found if zone in ways), 0.0)
-        if ways:
-            problem = problem.after_motions(ways, name)
+        found = [*(() if shared else _ways_of_pairs(answer.body, case)), *_ways_of_rigid(case)]
+        largest = max((of_peak for _, _, of_peak in found), default=0.0)
+        if largest > least:
+            problem, change = problem.after_motions({zone: way for zone, way, _ in found}, name), max(change, largest)
     return problem, change
 
 
@@ -181,18 +180,19 @@ def _ways_of_rigid(case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:
         spread = np.sqrt(force @ (motion - mean) ** 2 / force.sum())
         still = abs(motion).min(axis=0) <= ROUND_OFF * abs(motion).max()  # as at a line of symmetry
         x, y = (step - np.where(still | (abs(mean) <= AS_A_WHOLE * spread), mean, 0.0)).tolist()
-        way, found = spin._replace(x=x, y=y), list[Faces]()
+        way, found, moments = spin._replace(x=x, y=y), list[Faces](), list[float]()
         for item in (surface, surface.after(way)):
             faces, moved = item.faces(places, inward[at], reach[at]), steps + spin.motion_at(places - item.way.step)
             found.append(faces._replace(gap=faces.gap - np.einsum("ksx,kx->ks", faces.normals, moved)))
+            moments.append(float(force @ cross(places - item.way.step - about, faces.normals[:, 1])))
         now, there = found
         off = float(abs(there.gap - now.gap).max()) / scale
         turned = 0.0 if _is_straight(surface) else float(np.hypot(*(there.normals - now.normals).T).max())
         part = max(off, turned) / 2
         part *= JUMPS if isinstance(surface, BodySurface) else 1.0
         if any(tool.free[2] for tool in body.problem.tools.values() if name in tool.zones):
-            across = abs(cross(force @ now.normals[:, 1], way.step - surface.way.step)) / force.sum()
-            part = max(part, float(across) / contact.weights[beside][force > 0].sum())
+            lever = abs(moments[1] - moments[0]) / force.sum()
+            part = max(part, lever / contact.weights[beside][force > 0].sum())
         yield name, way, part
 
 

@@ -352,3 +352,32 @@ def test_contacts_that_move_together_may_press_alone():
     assert slid.holds
     assert slid.forces["right"][1] == pytest.approx(slid.forces["left"][1], rel=0.005)
     assert slid.forces["right"] == pytest.approx(there.forces["right"], abs=0.03)
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (0.3, 0.1), (-0.3, 0.2), (0.1, -0.1)])
+def test_a_roller_may_be_drawn_beside_its_seat(place: tuple[float, float]):
+    """Two round bars hold it by forces along the lines through the centers: statics. It rolls in by many steps."""
+    radius, bars = 2.0, {"left": (-35.0, 3.0), "right": (20.0, 8.0)}
+    angles = {name: np.radians(degrees) for name, (degrees, _) in bars.items()}
+    normals = {name: np.array([-np.sin(angle), np.cos(angle)]) for name, angle in angles.items()}
+    zones = {
+        name: {"edges": "rim", "surface": {
+            "kind": "circle", "center": (-normals[name] * (radius + bar)).tolist(), "radius": bar, "body": "outside"}}
+        for name, (_, bar) in bars.items()
+    }  # fmt: skip
+    result = bemcontact.solve(
+        bemcontact.problem({
+            "name": "roller in a seat",
+            "material": {"young_modulus": 2e4, "poisson_ratio": 0.3},
+            "boundary": {"outer": [
+                {"name": "rim", "kind": "arc", "center": place, "radius": radius, "angles": [90, 450]}]},
+            "loads": {"gravity": {"density": 1.0, "acceleration": [0, -1]}},
+            "contact_zones": zones,
+            "accuracy": 0.02,
+        })
+    )  # fmt: skip
+    assert result.holds
+    weight = np.pi * radius**2
+    sizes = np.linalg.solve(np.column_stack([*normals.values()]), [0, weight])
+    for (name, normal), size in zip(normals.items(), sizes, strict=True):
+        assert result.forces[name] == pytest.approx(size * normal, abs=0.003 * weight)
