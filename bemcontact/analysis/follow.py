@@ -34,6 +34,7 @@ from bemcontact.parametric.sensitivity import Sensitivities
 from bemcontact.parametric.sensitivity import sensitivities as sensitivities_of_contact
 from bemcontact.problems.key_path import existing_path, parsed_path
 from bemcontact.problems.problem import Problem
+from bemcontact.problems.quantities import in_units
 from bemcontact.problems.wording import described, unknown_word
 
 MODULUS = "young_modulus"
@@ -54,7 +55,7 @@ NOTHING = 1e-13
 
 @one_thread
 def follow(
-    problem: Problem, key: str, to: float, start: float | None = None, **asking: Unpack[AskingKeywords]
+    problem: Problem, key: str, to: float | str, start: float | str | None = None, **asking: Unpack[AskingKeywords]
 ) -> ParameterPath:
     """Follow the contact state while one value of the problem changes, exactly.
 
@@ -63,7 +64,7 @@ def follow(
     problem : Problem
     key : path to the value, as of `Problem.with_value`, or "load_cases.wind" for the factor of a load case; gaps and
         loads must depend on it linearly, and nothing else
-    to : value at the end of the path
+    to : value at the end of the path, a number or one with a unit, such as 40 MPa
     start : value at its beginning, that of the problem if not given
     asking : variant, set, case, accuracy and refine, as of `bemcontact.solve`
 
@@ -80,8 +81,8 @@ def follow(
     ensure_kind(problem, Problem)
     problem = asked(problem, asking)
     text_of_argument(key, "key")
-    end = real_number(to, f"{key}: the value at the end of the path (to)")
-    begin = stated_value(problem, key) if start is None else real_number(start, f"{key}: the start value")
+    end = _number(problem, key, to, f"{key}: the value at the end of the path (to)")
+    begin = stated_value(problem, key) if start is None else _number(problem, key, start, f"{key}: the start value")
     if case_of(problem, key) is None:
         ensure_acting(problem)
     if begin == end:
@@ -100,6 +101,13 @@ def follow(
         penetration=deepest, penetrates_at=at, said=said, breakpoint_bars=bars,
         result_at=partial(_result, followed, Accuracy(asked=None, reason=BETWEEN).knowing(first, last)),
     )  # fmt: skip
+
+
+def _number(problem: Problem, key: str, value: object, what: str) -> float:
+    """Read a value of a key, a number or one with a unit."""
+    if isinstance(value, str):
+        value = in_units(value, parsed_path(key), problem.units.length.strip(), problem.units.force.strip())
+    return real_number(value, what)
 
 
 def _result(followed: FollowedPath, accuracy: Accuracy, t: float) -> Result:

@@ -1,7 +1,7 @@
 """From a problem to an assessed result: condense, solve, recover and assess, with the time of each stage."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
 from typing import Self, TypeVar, Unpack, cast
@@ -101,7 +101,9 @@ def ensure_kind(problem: object, *kinds: type) -> None:
     kinds = kinds or (Problem, CondensedContact)
     if not isinstance(problem, kinds):
         names = " or a ".join(kind.__name__ for kind in kinds)
-        raise ProblemError(f"a {names} is needed, found {shown(problem)}; bemcontact.load reads one from a file")
+        hint = "bemcontact.load reads one from a file"
+        hint = "bemcontact.problem makes one from it" if isinstance(problem, Mapping) else hint
+        raise ProblemError(f"a {names} is needed, found {shown(problem)}; {hint}")
 
 
 Stated = TypeVar("Stated", Problem, CondensedContact, Problem | CondensedContact)

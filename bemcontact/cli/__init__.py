@@ -13,11 +13,12 @@ from typing import Annotated
 import typer
 
 from bemcontact.cli import check, compare, path, reproduce, solve, study
-from bemcontact.cli.command import MeaningCommand, flattened, help_of, refuse, reported
+from bemcontact.cli.command import MeaningCommand, MeaningGroup, flattened, help_of, refuse, reported
 from bemcontact.cli.terminal import standard_output
 from bemcontact.errors import LINE_BREAKS, escaped, hidden_character
 
 app = typer.Typer(
+    cls=MeaningGroup,
     add_completion=False,
     invoke_without_command=True,
     pretty_exceptions_enable=False,

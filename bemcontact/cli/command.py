@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Annotated, Any, NoReturn, get_type_hints
 
 import typer
-from typer.core import TyperCommand
+from typer.core import TyperCommand, TyperGroup
 
 from bemcontact.checks.docstrings import docstring
 from bemcontact.checks.memory import ensure_memory
@@ -26,45 +26,63 @@ from bemcontact.cli.terminal import (
 )
 from bemcontact.errors import BemContactError, NotConvexError, OptionError, ProblemError, SpecError, escaped
 from bemcontact.files import output
-from bemcontact.options import SolveOptions
+from bemcontact.options import MEANT, SolveOptions
 
 UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 """Exit statuses other than 0."""
-
-
-MEANT = {
-    "--figure": ("plot", "picture", "image", "png", "svg", "pdf", "draw", "graph", "chart", "save-figure", "fig"),
-    "--animation": ("animate", "gif", "movie", "film", "video", "frames"),
-    "--out": ("output", "folder", "directory", "dir", "report", "html", "page", "o", "csv", "table", "save", "write"),
-    "--accuracy": ("tolerance", "tol", "error", "precision", "eps", "rtol", "epsilon"),
-    "--refine": ("mesh", "refinement", "elements", "density", "h", "fine", "n"),
-    "--formulation": ("method", "formulations", "algorithm", "qp", "model", "type"),
-    "--case": ("load-case", "loadcase", "load", "cases", "combination"),
-    "--variant": ("version-of", "config", "configuration"),
-    "--set": ("override", "param", "parameter", "change", "define", "d", "value", "key"),
-    "--json": ("data", "result", "results", "export"),
-    "--vtk": ("paraview", "vtu"),
-    "--max-iterations": ("iterations", "maxiter", "max-iter", "limit"),
-    "--stress": ("von-mises", "contour", "shear"),
-    "--vary": ("grid", "sweep", "range", "over"),
-    "--workers": ("jobs", "j", "processes", "threads", "cores", "parallel", "cpus"),
+IN_FILE = ("units", "unit", "material", "e")
+"""Options that others have for what a spec states."""
+COMMANDS = {
+    "solve": ("run", "calculate", "compute", "analyze", "start", "execute"),
+    "check": ("validate", "verify", "mesh", "show", "info", "lint", "test", "plot", "view", "draw"),
+    "study": ("sweep", "vary", "batch"),
+    "--help": ("help",),
+    "--version": ("version",),
 }
-"""Option -> what others call it."""
+"""Command or option -> what others call it."""
 
 
 class MeaningCommand(TyperCommand):
     """A command that names the option which is meant by another word for it."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse arguments; of an unknown option, name that with the nearest meaning."""
+        """Parse arguments; of an unknown option, name that with the nearest meaning, or the commands that have it."""
         own = {name for parameter in self.params for name in parameter.opts}
         try:
             return super().parse_args(ctx, args)
         except Exception as error:  # the class of the parser's error is not public
             word = str(getattr(error, "option_name", "")).strip("-").lower().replace("_", "-")
-            meant = [option for option, words in MEANT.items() if word in words and option in own]
-            if meant and hasattr(error, "possibilities"):
+            if not hasattr(error, "possibilities"):
+                raise
+            unknown = f"No such option: {vars(error).get('option_name')}"
+            wanted = [option for option, words in MEANT.items() if word in words or option == f"--{word}"]
+            others = ctx.parent.command.commands if ctx.parent else {}
+            elsewhere = [
+                name
+                for name, command in others.items()
+                if any(option in parameter.opts for parameter in command.params for option in wanted)
+            ]
+            if meant := [option for option in wanted if option in own]:
                 vars(error)["possibilities"] = meant
+            elif word in IN_FILE:
+                vars(error).update(possibilities=None, message=f"{unknown}; it stands in the spec")
+            elif elsewhere:
+                which = f"{wanted[0]} is an option of {', '.join(elsewhere)}"
+                vars(error).update(possibilities=None, message=f"{unknown}; {which}")
+            raise
+
+
+class MeaningGroup(TyperGroup):
+    """The commands, of which that is named which is meant by another word for it."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Find a command; of an unknown one, name that with the nearest meaning."""
+        try:
+            return super().resolve_command(ctx, args)
+        except Exception as error:
+            meant = [name for name, words in COMMANDS.items() if args and args[0].lower() in words]
+            if meant and hasattr(error, "message"):
+                vars(error)["message"] = f"No such command '{args[0]}'. Did you mean '{meant[0]}'?"
             raise
 
 

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bemcontact.cli.arguments import JsonOption, RefineOption, Source, by_option, read_number, with_default
+from bemcontact.cli.arguments import JsonOption, RefineOption, Source, by_option, read_quantity, with_default
 from bemcontact.cli.command import CommandOutput, modules, run
 from bemcontact.cli.terminal import Report
 
@@ -16,13 +16,13 @@ def path(
         str, typer.Option(metavar="KEY.PATH", help="Value to vary, by the same paths as --set.", show_default=False)
     ],
     to: Annotated[
-        float, typer.Option(parser=read_number, metavar="VALUE", help="Where the path ends.", show_default=False)
+        float, typer.Option(parser=read_quantity, metavar="VALUE", help="Where the path ends.", show_default=False)
     ],
     start: Annotated[
         float | None,
         typer.Option(
             "--from",
-            parser=read_number,
+            parser=read_quantity,
             metavar="VALUE",
             help=with_default("Where the path begins.", "as in the spec"),
             show_default=False,

@@ -5,6 +5,7 @@ from bemcontact.options.asking import AskedAccuracy as AskedAccuracy
 from bemcontact.options.asking import AskingKeywords as AskingKeywords
 from bemcontact.options.comparing import ComparisonOptions as ComparisonOptions
 from bemcontact.options.declaration import EXPECTED_ACCURACY as EXPECTED_ACCURACY
+from bemcontact.options.declaration import MEANT as MEANT
 from bemcontact.options.declaration import STARTS as STARTS
 from bemcontact.options.declaration import ensure_known as ensure_known
 from bemcontact.options.declaration import ensure_whole as ensure_whole

@@ -1,6 +1,6 @@
 """How an option is declared: once, with its default, meaning and name in errors; and the checks of options."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, fields
 from difflib import get_close_matches
 from enum import StrEnum
@@ -13,6 +13,40 @@ from bemcontact.errors import OptionError, ProblemError
 
 Name = TypeVar("Name", bound=StrEnum)
 Options = TypeVar("Options")
+
+MEANT: Mapping[str, Sequence[str]] = {
+    "--figure": (
+        "plot",
+        "picture",
+        "image",
+        "png",
+        "svg",
+        "pdf",
+        "draw",
+        "graph",
+        "chart",
+        "save-figure",
+        "fig",
+        "show",
+        "view",
+        "display",
+    ),
+    "--animation": ("animate", "gif", "movie", "film", "video", "frames"),
+    "--out": ("output", "folder", "directory", "dir", "report", "html", "page", "o", "csv", "table", "save", "write"),
+    "--accuracy": ("tolerance", "tol", "error", "precision", "eps", "rtol", "epsilon"),
+    "--refine": ("mesh", "refinement", "elements", "density", "h", "fine", "n"),
+    "--formulation": ("method", "formulations", "algorithm", "qp", "model", "type"),
+    "--case": ("load-case", "loadcase", "load", "cases", "combination"),
+    "--variant": ("version-of", "config", "configuration"),
+    "--set": ("override", "overrides", "param", "parameter", "change", "define", "d", "value", "key"),
+    "--json": ("data", "result", "results", "export", "verbose", "debug", "full"),
+    "--vtk": ("paraview", "vtu"),
+    "--max-iterations": ("iterations", "maxiter", "max-iter", "limit"),
+    "--stress": ("von-mises", "contour", "shear"),
+    "--vary": ("grid", "sweep", "range", "over"),
+    "--workers": ("jobs", "j", "processes", "threads", "cores", "parallel", "cpus"),
+}
+"""Option -> what others call it."""
 
 STARTS = "number of starts"
 MOST_STARTS = 1_000_000
@@ -91,6 +125,13 @@ def ensure_known(options: Iterable[str], known: Iterable[str]) -> None:
     known = [*known]
     for name in options:
         if name not in known:
-            meant = get_close_matches(str(name), known, n=1)
+            word = str(name).strip("-").lower().replace("_", "-")
+            meant = [own for option, words in MEANT.items() if word in words and (own := _argument(option)) in known]
+            meant = meant or get_close_matches(str(name), known, n=1)
             known_words = f"did you mean '{meant[0]}'?" if meant else f"choose from {', '.join(known)}"
             raise OptionError(f"there is no option '{name}'; {known_words}")
+
+
+def _argument(option: str) -> str:
+    """Name of the argument in Python of an option of the command line."""
+    return option.strip("-").replace("-", "_")

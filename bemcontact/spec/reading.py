@@ -73,7 +73,7 @@ def load(path: str | os.PathLike[str], overrides: Changes = (), variant: str | N
         for each mistake.
     """
     if not isinstance(path, str | os.PathLike) or not isinstance(os.fspath(path), str):
-        hint = "bemcontact.loads reads a text, and bemcontact.Problem(**parts) takes a mapping"
+        hint = "bemcontact.loads reads a text, and bemcontact.problem takes a mapping"
         raise SpecError(f"load needs the path of a file; found {shown(path)}; {hint}")
     if "\n" in os.fspath(path) and not os.path.exists(path):
         raise SpecError(

@@ -47,6 +47,24 @@ def test_another_word_for_an_option_is_led_to_it(block: Path, command: str, give
     assert re.search(rf"No such option:? '?{given}'?.*{meant}", " ".join(answer.stderr.split()))
 
 
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["solve", "SPEC", "--vary", "x"], "No such option: --vary; --vary is an option of path, study"),
+        (["solve", "SPEC", "--jobs", "2"], "No such option: --jobs; --workers is an option of study"),
+        (["check", "SPEC", "--formulation", "qp1"], "--formulation is an option of solve"),
+        (["solve", "SPEC", "--units", "mm"], "No such option: --units; it stands in the spec"),
+        (["run", "SPEC"], "No such command 'run'. Did you mean 'solve'?"),
+        (["validate", "SPEC"], "No such command 'validate'. Did you mean 'check'?"),
+        (["sovle", "SPEC"], "No such command 'sovle'. Did you mean 'solve'?"),
+    ],
+)
+def test_what_another_command_has_and_other_words_for_commands_are_named(block: Path, arguments: list[str], words: str):
+    answer = run(*(block if argument == "SPEC" else argument for argument in arguments))
+    assert answer.exit_code == 2
+    assert words in " ".join(answer.stderr.split())
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
 @pytest.mark.parametrize("command", ["check", "solve"])

@@ -137,3 +137,14 @@ def test_overrides_variants_and_refinement_come_first():
     told = json.loads(answer.stdout)
     assert told["name"] == "cylinder on a plane, paper"
     assert len(told["points"]) == 2 * 2 * 10 + 1  # 10 quadratic elements in the contact zone, cut in two
+
+
+def test_ends_with_units_are_those_in_the_units_of_the_problem():
+    """1 kN/cm² is 10 MPa, and the unit of stress of this problem; a length is no stress."""
+    ends = (("--from", "1", "--to", "2e0"), ("--from", "10 MPa", "--to", "2e7Pa"))
+    told = [json.loads(run(CYLINDER, "--vary", PRESSURE, *end, "--json", "-", variant="paper").stdout) for end in ends]
+    assert [answer["start"] for answer in told] == pytest.approx([1.0, 1.0], rel=1e-12)
+    assert [answer["end"] for answer in told] == pytest.approx([2.0, 2.0], rel=1e-12)
+    answer = run(CYLINDER, "--vary", PRESSURE, "--to", "5 mm", variant="paper")
+    assert answer.exit_code == 2
+    assert "conditions.top.pressure: expected a stress such as 210 GPa; found 5 mm" in answer.stderr

@@ -44,7 +44,9 @@ def test_keywords_are_the_fields_of_the_options_with_their_types(keywords, optio
 @pytest.mark.parametrize(
     ("call", "options", "words"),
     [
-        (bemcontact.solve, {"method": "qp1"}, "there is no option 'method'; choose from formulation, weights"),
+        (bemcontact.solve, {"method": "qp1"}, "there is no option 'method'; did you mean 'formulation'"),
+        (bemcontact.solve, {"tolerance": 0.01}, "there is no option 'tolerance'; did you mean 'accuracy'"),
+        (bemcontact.solve, {"what": 1}, "there is no option 'what'; choose from formulation, weights"),
         (bemcontact.compare, {"method": "qp1"}, "there is no option 'method'; choose from formulations"),
         (bemcontact.random_starts, {"polish": True}, "there is no option 'polish'; choose from penalty, rows"),
         (bemcontact.random_starts, {"start": "null"}, "there is no option 'start'"),
