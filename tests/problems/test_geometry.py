@@ -47,5 +47,5 @@ def test_grading_ratio_is_in_its_range(ratio):
 
 def test_edges_are_frozen():
     line = Line(name="line", elements=2)
-    with pytest.raises(ProblemError, match="does not change"):
+    with pytest.raises(ProblemError, match="a Line does not change"):
         line.elements = 3
