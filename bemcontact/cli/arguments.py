@@ -56,7 +56,7 @@ RefineOption = Annotated[
     int, typer.Option(parser=reader(int, 1), metavar="K", help="Split each element into K equal parts.")
 ]
 read_number = reader(float)
-WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?+\s*[^\W\d_].*")
+WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?+\s*(?![eE]$)[^\W\d_].*")
 """A number with a unit behind it."""
 
 
