@@ -1,10 +1,13 @@
 """Values with units: the numbers that they are, and what is refused; problems restated in other units."""
 
+import io
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import bemcontact
 from bemcontact.problems import quantities
@@ -17,6 +20,7 @@ from bemcontact.problems.quantities import (
     with_numbers,
 )
 from bemcontact.problems.units import METERS, NEWTONS
+from bemcontact.report.text import result_summary
 
 MODELS = sorted((Path(__file__).parents[2] / "models").rglob("*.yaml"))
 UNITS = {"length": "mm", "force": "N"}
@@ -191,6 +195,17 @@ MANY_BODIES = "roller_bearing"
 """The model that takes minutes; its bodies are those of others."""
 
 
+def words_of(*results):
+    """What the program prints of each result: its words without numbers, and without the units of any of them."""
+    units = {unit for it in results for unit in (it.units.stress, it.units.line_force, it.units.length)}
+    units |= {f"{it.units.force}·{it.units.length}/{it.units.length}" for it in results}
+    for result in results:
+        console = Console(file=io.StringIO(), width=10_000)
+        console.print(result_summary(result))
+        words = re.split(r"[\s(),;:]+", console.file.getvalue())
+        yield [word for word in words if word not in units and not re.match(r"[-.\d]", word)]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("units", [("m", "N"), ("in", "lbf")], ids="/".join)
 @pytest.mark.parametrize("model", [path for path in MODELS if path.stem != MANY_BODIES], ids=lambda model: model.stem)
@@ -216,3 +231,5 @@ def test_other_units_change_no_answer_beyond_round_off(model, units):
     np.testing.assert_allclose(pressure, other.pressure, rtol=0, atol=rounded)
     np.testing.assert_allclose(one.gap * length, other.gap, rtol=0, atol=1e-12 * problem.size * length)
     assert (other.certificate.kind, other.certified) == (one.certificate.kind, one.certified)
+    words, others = words_of(one, other)
+    assert words == others
