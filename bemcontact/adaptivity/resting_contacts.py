@@ -121,7 +121,8 @@ def after_motion(answer: Solved) -> tuple[Problem, float]:
         found = [*(() if shared else _ways_of_pairs(answer.body, case)), *_ways_of_rigid(case)]
         largest = max((of_peak for _, _, of_peak in found), default=0.0)
         if largest > least:
-            problem, change = problem.after_motions({zone: way for zone, way, _ in found}, name), max(change, largest)
+            ways = {zone: way for zone, way, of_peak in found if of_peak > 0}
+            problem, change = problem.after_motions(ways, name), max(change, largest)
     return problem, change
 
 
@@ -133,9 +134,11 @@ def has_cases(problem: Problem) -> bool:
 def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:
     """For each contact of two elastic bodies, where the second one is beside the first, and what that may change.
 
-    A peak is off as of `_ways_of_rigid`, in the mean, and as of `PairMotion.change_of_peak`.
+    A peak is off as of `PairMotion.change_of_peak`. As one side slides along the other, common normals turn by the
+    larger curvature at most, and gaps are off by half of the turn times the slide: a peak is off by these as of
+    `_ways_of_rigid`.
     """
-    contact, names, (inward, reach) = case.condensation.contact, [*body.problem.zones], body.outline.sides
+    contact = case.condensation.contact
     moved = motions_of_pairs(body, contact, case.solution.pressure, case.displacement)
     for name, motion in moved.items():
         surface = _pairs(body.problem)[name]
@@ -143,17 +146,9 @@ def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Way, flo
         step[abs(step) <= AS_A_WHOLE * motion.spread] = 0.0
         step[_axes_of_symmetry(body, name)] = 0.0
         x, y = (surface.approach.step + step).tolist()
-        part, force = 0.0, abs(contact.weights_by_zone[names.index(name)] * case.solution.pressure)
-        at = body.points.node[force > 0]
-        if len(at):  # else other contacts with which it moves press alone
-            now, there = (
-                item.faces(body.mesh.nodes[at], inward[at], reach[at]) for item in (surface, surface.after(Way(x, y)))
-            )
-            turned = (there.normals - now.normals)[:, 1]
-            off = (there.gap - now.gap)[:, 1] - turned @ motion.mean
-            squares = np.maximum((off / contact.scales.displacement) ** 2, np.sum(turned**2, axis=1))
-            part = float(np.sqrt(np.average(squares, weights=force[force > 0]))) / 2
-        yield name, Way(x, y), max(part, motion.change_of_peak(step))
+        turn = abs(float(motion.turns @ step))
+        off = turn * float(np.hypot(*step)) / contact.scales.displacement / 2
+        yield name, Way(x, y), max(turn / 2, off / 2, motion.change_of_peak(step))
 
 
 def _ways_of_rigid(case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:
@@ -216,11 +211,13 @@ class PairMotion(NamedTuple):
     mean : (2,) displacement less the stated gap [L]
     spread : (2,) root mean square of its differences from the mean [L]
     bends : (2, 2) vectors [1/L] along and across the normal at the peak, as long as the curvature that counts
+    turns : (2,) vector [1/L] across the normal at the peak, as long as the turn of common normals by a slide may be
     """
 
     mean: Array
     spread: Array
     bends: Array
+    turns: Array
 
     def change_of_peak(self, step: Array) -> float:
         """Part by which a peak is off if pairs are off by a motion (2,) [L].
@@ -252,14 +249,14 @@ def motions_of_pairs(
             spread = np.sqrt(np.einsum("kn,knd->d", abs(signed), squares) / force)
             peak = contact.points[int(abs(signed).sum(axis=0).argmax())]
             found |= {
-                name: PairMotion(each * mean, spread, _bends(touching[name], peak[None]))
+                name: PairMotion(each * mean, spread, *_bends(touching[name], peak[None]))
                 for name, each in signs.items()
             }
     return found
 
 
-def _bends(surface: BodySurface, point: Array) -> Array:
-    """Vectors (2, 2) [1/L] at a point (1, 2), as of `PairMotion`.
+def _bends(surface: BodySurface, point: Array) -> tuple[Array, Array]:
+    """Vectors (2, 2) and (2,) [1/L] at a point (1, 2), as of `PairMotion`.
 
     Along the normal the curvatures of both sides count in proportion to their part in common normals. Across it the
     smaller one counts: what slides along a flat side keeps its distances.
@@ -269,4 +266,5 @@ def _bends(surface: BodySurface, point: Array) -> Array:
     own, its = abs(curvatures(surface.first, place)[0]), abs(curvatures(surface.edges, other)[0])
     x, y = pair.normals[0]
     both = surface.share * own + (1 - surface.share) * its
-    return np.array([[x, y], [-y, x]]) * np.array([[both], [min(own, its)]])
+    along, across = np.array([x, y]), np.array([-y, x])
+    return np.array([both * along, min(own, its) * across]), max(own, its) * across
