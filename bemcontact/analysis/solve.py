@@ -300,7 +300,8 @@ def assessed(
             if boundary is not None and condensation is not None:
                 gaps = surface_gaps(condensation.body, boundary, contact, solution)
                 deepest, said = misfit(gaps, condensation.body, contact, solution, where, prepared.accuracy.infinite)
-            said += tuple(diagnostics(contact, solution, where, None if condensation is None else condensation.body))
+            body = None if condensation is None else condensation.body
+            said += tuple(diagnostics(contact, solution, where, body, met=prepared.accuracy.met is True))
         notes = (*contact.notes, *solution.notes, *said)
     gap = contact.initial_gap + solution.displacement
     return Result(
