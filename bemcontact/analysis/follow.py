@@ -55,7 +55,7 @@ NOTHING = 1e-13
 
 @one_thread
 def follow(
-    problem: Problem, key: str, to: float | str, start: float | str | None = None, **asking: Unpack[AskingKeywords]
+    problem: Problem, key: str, to: float | str, *, start: float | str | None = None, **asking: Unpack[AskingKeywords]
 ) -> ParameterPath:
     """Follow the contact state while one value of the problem changes, exactly.
 

@@ -73,7 +73,7 @@ def path(
         with by_option("--vary"):
             room = parsed_path(vary)[:1]
         with by_option("--vary", room, source.located):  # with the value as stated there is no mistake
-            followed = follow(problem, vary, to, start)
+            followed = follow(problem, vary, to, start=start)
 
         def drawn(done: int, of: int) -> None:
             report("drawing", f"frame {done} of {of}")

@@ -55,7 +55,7 @@ def apart(one: CondensedContact, other: CondensedContact, pressure: np.ndarray) 
 )
 def test_states_of_a_path_are_those_of_the_problem_itself(cantilever: Problem, key: str, to: float, start: float):
     """Loads, rigid surfaces and prescribed displacements; problems condensed and solved anew agree to 1e-9."""
-    found = follow(cantilever, key, to, start)
+    found = follow(cantilever, key, to, start=start)
     assert found.certified
     for t in (0.0, 0.3, 0.7, 1.0):
         problem = bemcontact.condense(cantilever.with_value(key, found.value(t)))
@@ -100,7 +100,8 @@ def test_gravity_is_a_parameter(cylinder: Problem):
 @pytest.mark.parametrize("backwards", [False, True])
 def test_free_body_without_load_is_found_from_the_other_end(cylinder: Problem, backwards: bool):
     """Nothing presses the cylinder at 0, and it cannot be condensed; by linearity the load there is zero exactly."""
-    found = follow(cylinder, PRESSURE, *((0.0, None) if backwards else (50.625, 0.0)))
+    to, start = (0.0, None) if backwards else (50.625, 0.0)
+    found = follow(cylinder, PRESSURE, to, start=start)
     assert found.certified
     empty = found.breakpoints[-1 if backwards else 0]
     assert (empty.value, empty.peak, empty.resultant) == (0.0, 0.0, ((0.0, 0.0),))
@@ -181,7 +182,7 @@ def test_gap_that_is_all_round_off_is_no_bend():
 
     As the pressure on the floor vanishes, that on the wall is 5 still, as statics wants; the path arrives there.
     """
-    found = follow(bemcontact.load(MODELS / "gallery" / "block_in_corner.yaml"), PRESSURE, 0.0, 8.0)
+    found = follow(bemcontact.load(MODELS / "gallery" / "block_in_corner.yaml"), PRESSURE, 0.0, start=8.0)
     assert found.certified
     assert found.reaches == (8.0, 0.0)
     assert [state.peak for state in found.breakpoints] == pytest.approx([8.0, 5.0], rel=1e-9)
@@ -202,7 +203,7 @@ def on_eccentric_punch() -> Problem:
 def test_a_mesh_is_found_at_the_end_that_presses():
     """At the other end the force pulls at the punch, and there is no state for which a mesh could be found."""
     problem = bemcontact.load(MODELS / "gallery" / "eccentric_punch.yaml").with_case("off the middle")
-    found = follow(problem.with_value("accuracy", 0.2), "tools.punch.force.y", 2000.0, -2000.0)
+    found = follow(problem.with_value("accuracy", 0.2), "tools.punch.force.y", 2000.0, start=-2000.0)
     assert found.reaches == pytest.approx((-2000.0, -800.0), rel=1e-9)  # where the moment of 4000 tips it off its edge
     assert found.start_accuracy.met
     assert found.end_accuracy.met is None
@@ -214,7 +215,7 @@ def test_a_short_path_needs_no_finer_mesh_than_its_beginning():
     problem = bemcontact.load(MODELS / "gallery" / "hertz_small.yaml").with_value("accuracy", 0.05)
     problem = problem.with_value("mesh.refine", 2)
     alone = meshed(problem).condensation.contact
-    found = follow(problem, "conditions.top.pressure", 81.5 * (1 + 1e-6), 81.5)
+    found = follow(problem, "conditions.top.pressure", 81.5 * (1 + 1e-6), start=81.5)
     assert alone.size <= found.contact.size <= 2 * alone.size
     assert found.start_accuracy.met
     assert found.end_accuracy.met
@@ -227,7 +228,8 @@ def test_load_that_turns_around_is_followed_to_where_the_tool_lifts_off(to: floa
     problem = on_eccentric_punch()
     problem = problem.with_value("load_cases.off the middle.tools.punch.force.moment", 0.0)
     key, ends = "tools.punch.force.y", (-2000.0, to)
-    path = follow(problem, key, *(ends if backwards else ends[::-1])).path
+    last, first = ends if backwards else ends[::-1]
+    path = follow(problem, key, last, start=first).path
     none = 2000.0 / (2000.0 + to)
     reached, half = (path.begins_at, 1 - none / 2) if backwards else (path.ends_at, none / 2)
     assert reached == pytest.approx(1 - none if backwards else none, rel=1e-13)
@@ -241,7 +243,7 @@ def test_factor_of_a_load_case_is_known_all_along_a_path_from_where_nothing_pres
     data["tools"]["plate"]["force"]["y"] = 0.0
     data["load_cases"] = {"press": {"tools": {"plate": {"force": {"y": -400.0}}}}}
     problem = Problem(**data).with_case("press")
-    path = follow(problem, "load_cases.press", 1.0, 0.0).path
+    path = follow(problem, "load_cases.press", 1.0, start=0.0).path
     for t in (0.0, 0.3, 1.0):
         assert path.contact(t).cases.factors == pytest.approx([t], abs=1e-15)
     full = path.contact(0.3).with_factors({"press": 1.0})
@@ -382,7 +384,7 @@ def test_each_breakpoint_has_error_bars_that_hold():
 def test_contact_leaves_the_place_of_an_infinite_pressure_on_a_path(to: float):
     """The punch tilts to either edge; at the end it stands on one, where the search has seen an infinite pressure."""
     punch = bemcontact.load(MODELS / "gallery" / "eccentric_punch.yaml").with_case("in the middle")
-    found = follow(punch.with_value("accuracy", 0.1), "tools.punch.force.moment", to, 0.0)
+    found = follow(punch.with_value("accuracy", 0.1), "tools.punch.force.moment", to, start=0.0)
     assert found.certified
     assert found.end_accuracy.met
     assert all(found.breakpoint_bars)
@@ -392,7 +394,7 @@ def test_contact_leaves_the_place_of_an_infinite_pressure_on_a_path(to: float):
 def test_a_path_needs_no_variant_that_fits_its_mesh():
     """The variants of a model state other meshes of the same edges, which a mesh that is found contradicts."""
     beam = bemcontact.load(MODELS / "gallery" / "beam_on_two_supports.yaml").with_value("accuracy", 0.1)
-    found = follow(beam, "conditions.loaded.pressure", 0.15, 0.14)
+    found = follow(beam, "conditions.loaded.pressure", 0.15, start=0.14)
     assert found.start_accuracy.met
     assert found.end_accuracy.met
     assert found.breakpoints[-1].peak == pytest.approx(
@@ -403,7 +405,7 @@ def test_a_path_needs_no_variant_that_fits_its_mesh():
 @pytest.mark.slow
 def test_of_a_stated_mesh_no_bar_is_that_of_an_infinite_peak():
     """At the breakpoints as at the ends: no value for the peak, and the force to the accuracy of the mesh."""
-    found = follow(on_eccentric_punch().with_value("accuracy", 0.01), "tools.punch.force.y", -2000.0, -1900.0)
+    found = follow(on_eccentric_punch().with_value("accuracy", 0.01), "tools.punch.force.y", -2000.0, start=-1900.0)
     first, last = found.breakpoint_bars[0], found.breakpoint_bars[-1]
     for bars in (first, last):
         (peak,) = (item for item in bars if item.quantity == "peak")

@@ -156,7 +156,7 @@ def test_load_cases_compare_and_paths_say_it():
 def test_the_end_of_a_path_penetrates_as_the_solution_there(key, start, end, pressure):
     problem = seal(pressure=0.5, gap=0.05, load_cases={"more": {"conditions": {"top": {"pressure": 19.75}}}},
                    combinations={"none": {"more": 0}}, case="none")  # fmt: skip
-    path = follow(problem, key, end, start)
+    path = follow(problem, key, end, start=start)
     there = solve(problem.with_value(key, end) if "top" in key else problem.with_factors({"more": end}))
     assert path.certified == there.certified
     if bulge(pressure) > 0.06:

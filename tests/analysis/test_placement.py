@@ -231,7 +231,7 @@ def test_a_path_through_first_touch_is_proved(distance, size):
     Each state is that of a solve, and the end of the path is certified if and only if the solution there is.
     """
     problem = solve(strip(distance, size)).problem.model_copy(update={"accuracy": None})
-    path = follow(problem, "conditions.top.pressure", 10.0, 0.0)
+    path = follow(problem, "conditions.top.pressure", 10.0, start=0.0)
     last = solve(problem)
     assert last.certified
     assert path.certified
@@ -246,7 +246,9 @@ def test_a_path_through_first_touch_is_proved(distance, size):
 @example(3.0)
 def test_a_path_has_the_curvature_of_its_end(clearance):
     """The shaft sinks by its gap under any weight: each state has the peak of the shaft that is drawn at the bottom."""
-    paths = [follow(shaft(clearance, sinks=sinks), "loads.gravity.density", 1.0, 0.1) for sinks in (clearance, 0.0)]
+    paths = [
+        follow(shaft(clearance, sinks=sinks), "loads.gravity.density", 1.0, start=0.1) for sinks in (clearance, 0.0)
+    ]
     assert all(path.certified for path in paths)
     for t in (0.0, 0.5, 1.0):
         drawn, there = (path.path.at(t).pressure.max() for path in paths)

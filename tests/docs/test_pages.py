@@ -29,7 +29,7 @@ def followed_once(problem: Problem, key: str, to: float, start: float | None = N
     """`follow`, but a path that two pages show is found once."""
     asked = (problem.model_dump_json(), key, to, start)
     if asked not in PATHS:
-        PATHS[asked] = follow(problem, key, to, start)
+        PATHS[asked] = follow(problem, key, to, start=start)
     return PATHS[asked]
 
 

@@ -44,7 +44,7 @@ def cases() -> CaseResults:
 @cache
 def followed() -> ParameterPath:
     """A roller on a plane that is pressed more and more."""
-    return bemcontact.follow(roller(), "conditions.top.pressure", 1.0, 0.0)
+    return bemcontact.follow(roller(), "conditions.top.pressure", 1.0, start=0.0)
 
 
 @cache
@@ -65,7 +65,7 @@ def compared_cases() -> CaseComparisons:
 @cache
 def linked() -> ParameterPath:
     """The link on three surfaces, from no load to its load."""
-    return bemcontact.follow(LINK, "conditions.loaded.pressure", 20, 0)
+    return bemcontact.follow(LINK, "conditions.loaded.pressure", 20, start=0)
 
 
 EACH = {"roller": rolled, "punch": punched, "condensed": condensed, "cases": cases}

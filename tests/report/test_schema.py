@@ -99,7 +99,7 @@ def of_each_kind() -> dict[str, list[Any]]:
             bemcontact.study(cases, {"accuracy": [None]}, ["peak", "force"]),
         ],
         "path": [
-            bemcontact.follow(roller(), "conditions.top.pressure", 20.0, 0.0),
+            bemcontact.follow(roller(), "conditions.top.pressure", 20.0, start=0.0),
             bemcontact.follow(punch(), "conditions.top.pressure", 1.0),
         ],
         "load_path": [bemcontact.load_path(loose, CondensedContact.from_compliance(np.eye(2), [-1.0, 1.0]))],

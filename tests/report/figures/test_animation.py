@@ -119,7 +119,7 @@ def test_an_infinite_peak_is_written_as_such():
 def test_a_peak_is_infinite_only_where_something_presses():
     """A block whose top is held comes down on a punch: it has no pressure before it touches."""
     held = {"left": {"displacement": {"x": 0}}, "top": {"displacement": {"y": 0}}}
-    path = bemcontact.follow(punch(conditions=held, reference={}), "conditions.top.displacement.y", -0.02, 0.01)
+    path = bemcontact.follow(punch(conditions=held, reference={}), "conditions.top.displacement.y", -0.02, start=0.01)
     assert path.infinite == ("foot",)
     words = [text.splitlines()[1] for text in words_of(figures.draw_animation(path))]
     assert words[0] == "peak pressure 0 MPa"

@@ -112,7 +112,7 @@ def test_an_infinite_peak_is_not_drawn():
 
 def test_the_start_of_a_path_is_at_the_left_though_its_value_falls():
     problem = bemcontact.load(MODELS / "gallery" / "three_zones.yaml", variant="stated mesh")
-    unloaded = bemcontact.follow(problem, "conditions.loaded.pressure", 10, 20)
+    unloaded = bemcontact.follow(problem, "conditions.loaded.pressure", 10, start=20)
     for name, figure in figures.figures_of_path(unloaded).items():
         if name != "pressure":
             left, right = figure.axes[0].get_xlim()
@@ -156,7 +156,7 @@ def test_breakpoints_with_too_large_an_error_are_hollow(link: ParameterPath):
 def test_panels_have_one_scale_unless_both_ends_are_hidden_in_it(link: ParameterPath):
     """A beam first touches with its tip, under a pressure 30 times the last one: each panel has its own scale."""
     beam = bemcontact.load(MODELS / "cantilever_flat_surface.yaml", variant="stated mesh")
-    for path, alike in ((link, True), (bemcontact.follow(beam, "conditions.top.traction.y", -3.6, 0), False)):
+    for path, alike in ((link, True), (bemcontact.follow(beam, "conditions.top.traction.y", -3.6, start=0), False)):
         figure = figures.figures_of_path(path)["pressure"]
         tops = [axes.get_ylim()[1] for axes in figure.axes]
         assert (len({*tops}) == 1) == alike
@@ -168,7 +168,7 @@ def test_panels_have_one_scale_unless_both_ends_are_hidden_in_it(link: Parameter
 def test_round_off_is_drawn_as_zero():
     """The forces of a pin on a ring that is shrunk on it cancel."""
     ring = bemcontact.load(MODELS / "gallery" / "shrink_fit.yaml", variant="stated mesh")
-    path = bemcontact.follow(ring, "contact_zones.pin.surface.radius", 10.02, 10.005)
+    path = bemcontact.follow(ring, "contact_zones.pin.surface.radius", 10.02, start=10.005)
     for draw in (figures.draw_resultants, figures.draw_moments):
         axes = Figure().add_subplot()
         draw(axes, path)
