@@ -23,7 +23,7 @@ settings.load_profile("repeatable")
 
 
 SLOW = 5.0
-"""Seconds of a test that should have the marker slow: more than twice the two of the marker, for a busy machine."""
+"""Seconds of a test that should have the marker slow: five times that of the marker, for a busy machine."""
 
 
 @pytest.hookimpl(wrapper=True)

@@ -31,6 +31,7 @@ def test_each_dependency_has_one_line_that_states_what_it_is_for(group: str):
     assert sorted(lines) == sorted(names(GROUPS[group]))
 
 
+@pytest.mark.slow
 def test_each_package_that_is_imported_is_declared():
     declared = names([*GROUPS["Core"], *GROUPS["fast"], *GROUPS["vtk"], *GROUPS["dask"], *GROUPS["parquet"]])
     imported = set()

@@ -21,9 +21,10 @@ from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import NODES
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
-from bemcontact.problems.body_surface import BodySurface
+from bemcontact.problems.body_surface import AnyShape, BodySurface
 from bemcontact.problems.curves import cross
 from bemcontact.problems.surface_lines import Faces, Polyline, Spline
+from bemcontact.problems.way import AS_DRAWN
 
 FLUSH = 1e-6
 """Distance of an undeformed place from a surface, over the size of the body, up to which it lies in the surface; and
@@ -124,9 +125,12 @@ class SurfaceGaps(DisplacedSurfaces):
     @cached_property
     def held(self) -> dict[str, Faces]:
         """Faces that hold the nodes (m, 3) of elements, by zone, as in contact."""
+        return {name: self._holding(surface) for name, surface in self.surfaces.items()}
+
+    def _holding(self, surface: AnyShape) -> Faces:
+        """Faces of a surface that hold the nodes (m, 3) of elements."""
         mesh, side = self.outline.mesh, [2, 0, 0]
-        faces = {name: surface.faces(mesh.nodes, *self.outline.sides) for name, surface in self.surfaces.items()}
-        return {name: Faces(*(part[mesh.elements, side] for part in item)) for name, item in faces.items()}
+        return Faces(*(part[mesh.elements, side] for part in surface.faces(mesh.nodes, *self.outline.sides)))
 
     @cached_property
     def paired(self) -> dict[str, BoolArray]:
@@ -367,16 +371,18 @@ class SurfaceGaps(DisplacedSurfaces):
         return found
 
     def _ends(self, zone: str, paired: BoolArray) -> list[FaceEnd]:
-        """Where the surface is taken to end: its straight face goes on along the edge directly beyond the zone."""
-        mesh, ends = self.outline.mesh, list[FaceEnd]()
+        """Where the surface is taken to end: its straight face as drawn goes on along the edge beyond the zone."""
+        mesh, ends, surface = self.outline.mesh, list[FaceEnd](), self.surfaces[zone]
+        elastic = isinstance(surface, BodySurface) and surface.elastic
+        drawn = self.held[zone] if elastic else self._holding(surface.after(AS_DRAWN))
         for last, neighbor in ((2, mesh.elements[:, 2]), (0, mesh.before)):
             for own in np.flatnonzero(paired & ~paired[neighbor]).tolist():
                 beyond, at = int(neighbor[own]), self.state.points[own, last]
-                normal = self.held[zone].normals[own, last]
+                normal = drawn.normals[own, last]
                 if self._lies_in_face(zone, np.array([own, beyond]), at, normal):
                     along = self.state.points[beyond, last] - at
                     along = along / np.hypot(*along)
-                    foot = at - self.held[zone].gap[own, last] * normal
+                    foot = at - drawn.gap[own, last] * normal
                     ahead = min(map(float, self._ahead(zone, paired, foot, along, normal)), default=np.inf)
                     apart = self._between_zones(zone, paired, own, neighbor, normal)
                     if ahead == np.inf or apart or self.in_a_zone(beyond):

@@ -336,6 +336,7 @@ def test_a_stated_mesh_is_judged_and_left_alone():
     assert judged.worst == bar.bar
 
 
+@pytest.mark.slow
 def test_a_mesh_too_coarse_to_show_the_intervals_of_contact_has_no_error_bars():
     """Four contacts under the crests of a wave, of which four elements show two."""
     (judged,) = found(stated(wave_light()[0], 4).with_value("mesh.adapt", False)).accuracies
@@ -379,6 +380,7 @@ def test_a_stated_mesh_is_judged_unless_no_accuracy_is_asked_for():
     assert unjudged.reason
 
 
+@pytest.mark.slow
 def test_a_mesh_that_was_found_is_cut_as_asked():
     """Each element in two: twice the unknowns, and errors that are estimated anew, infinite peaks included."""
     problem = half_disk(2000.0)
@@ -657,6 +659,7 @@ def test_contact_across_the_border_of_two_zones():
     assert first.end == pytest.approx(second.start, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_corner_that_stands_on_a_face_by_itself_does_not_shift_the_zones_after_it():
     """Its run has no elements. In the other order of the zones it comes last, and the answer is the same."""
     outer = [
@@ -727,6 +730,7 @@ def tip(elements: int, across: int, pressure: float) -> Problem:
     return stated(strip, [elements, across, across, across]).with_value("mesh.adapt", False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("elements", "across", "pressure"), [(10, 3, 8.0), (14, 10, 30.0), (30, 22, 8.0)])
 def test_a_force_beside_an_infinite_pressure_alone_is_told(elements: int, across: int, pressure: float):
     """Contact of one or two elements at a corner, and nothing away from it."""

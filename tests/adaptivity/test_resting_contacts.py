@@ -44,6 +44,7 @@ def in_hole(x: float, y: float, hole: float, load: tuple[float, float] = (0, -1.
     return problem(bodies, 0.01, c=["pin/rim", "plate/bore"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", [(-1, 0), (0, 0), (0.6, 0.8)])
 @pytest.mark.parametrize("clearance", [0.02, 0.1])
 def test_a_pin_may_be_drawn_at_any_side_of_its_hole(way: tuple[float, float], clearance: float):
@@ -122,6 +123,7 @@ def rounded_punch(slide=0.0, *, drawn=0.0):
     })  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("slide", [-0.01, 0.2])
 def test_a_block_that_slides_under_a_punch_is_that_under_a_punch_drawn_there(slide):
     """Where the face goes over into its edges the curvature jumps: gaps as drawn would have a false corner there."""
@@ -159,6 +161,7 @@ def test_a_roller_may_be_drawn_anywhere_above_a_block(place):
     assert result.peak.pressure == pytest.approx(hertz, rel=0.02)  # the block is finite: b/h is 0.04
 
 
+@pytest.mark.slow
 def test_a_spline_that_moves_away_from_where_it_is_drawn_has_its_ends_with_it():
     """Drawn 13 beside the place where it presses, which is beyond its end as drawn; the same as drawn there."""
     block = {"bottom": (-20, -10), "right": (20, -10), "top": (20, 0), "left": (-20, 0)}
@@ -322,6 +325,7 @@ def test_a_nose_that_slides_along_a_flat_block_presses_straight_down(sides: list
     assert slid.forces["c"][1] == pytest.approx(there.forces["c"][1], rel=bars)
 
 
+@pytest.mark.slow
 def test_contacts_that_move_together_may_press_alone():
     """A nose of two edges, each with a contact, slides along a block: as drawn one of them presses, then both alike."""
     low = {"bottom": (-10, -8), "right": (10, -8), "top": (10, 0), "left": (-10, 0)}

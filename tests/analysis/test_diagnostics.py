@@ -378,6 +378,7 @@ def test_an_accuracy_above_a_tenth_is_noted(asked: float, noted: bool):
         assert all(f"{100 * asked:.3g} %" in note and "--accuracy 0.01" in note for note in told)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("flat", "noted"), [([-10, 30, 60, 95, 102], True), ([*range(-10, 98, 2), 98, 99, 99.5], False)]
 )

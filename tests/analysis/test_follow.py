@@ -200,6 +200,7 @@ def on_eccentric_punch() -> Problem:
     return stated.with_case("off the middle")
 
 
+@pytest.mark.slow
 def test_a_mesh_is_found_at_the_end_that_presses():
     """At the other end the force pulls at the punch, and there is no state for which a mesh could be found."""
     problem = bemcontact.load(MODELS / "gallery" / "eccentric_punch.yaml").with_case("off the middle")
@@ -210,6 +211,7 @@ def test_a_mesh_is_found_at_the_end_that_presses():
     assert found.end_accuracy.reason
 
 
+@pytest.mark.slow
 def test_a_short_path_needs_no_finer_mesh_than_its_beginning():
     """Both ends need the same mesh. The second search divides ends of contact anew; what is cut is not cut again."""
     problem = bemcontact.load(MODELS / "gallery" / "hertz_small.yaml").with_value("accuracy", 0.05)
@@ -236,6 +238,7 @@ def test_load_that_turns_around_is_followed_to_where_the_tool_lifts_off(to: floa
     assert apart(path.contact(half), condense(problem.with_value(key, -1000.0)), path.at(half).pressure) <= 1e-10
 
 
+@pytest.mark.slow
 def test_factor_of_a_load_case_is_known_all_along_a_path_from_where_nothing_presses():
     """(1 - t) 0 + t 1, which `with_factors` builds on, though the state at factor 0 cannot be condensed by itself."""
     problem = bemcontact.load(MODELS / "gallery" / "roller_in_v_block.yaml", variant="stated mesh").with_case("still")
@@ -433,6 +436,7 @@ def test_the_accuracy_of_a_path_is_that_of_its_problem_also_when_the_mesh_is_cut
     assert [(item.asked, item.met) for item in told] == [(asked, True)] * 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turn", [0.0, 0.7])
 def test_a_squeezed_block_bulges_beside_a_wall_and_is_moved_off_it(turn):
     """Where the side has closed the gap to the wall, points under the round lid go on to close: as a solve finds it."""

@@ -75,6 +75,7 @@ def random_points(result: Result, count: int = 20_000) -> np.ndarray:
     return points[result._stresses.bodies[0].field.locate(points).inside]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["cylinder_on_plane", "gallery/hertz_small", "bolt_in_plate", "gallery/shrink_fit"])
 def test_no_point_exceeds_the_largest(name: str):
     """Not by more than the field differs from that of the boundary beside it; the place has the value that is given."""
@@ -89,6 +90,7 @@ def test_no_point_exceeds_the_largest(name: str):
     assert largest.boundary.depth == 0
 
 
+@pytest.mark.slow
 def test_singular_bodies():
     """Below a sharp punch shear grows up to its edge, and so it does at clamped corners: there is no largest stress."""
     punch = bemcontact.solve(bemcontact.load(MODELS / "gallery" / "flat_punch.yaml")).largest_stresses()
@@ -129,6 +131,7 @@ def on_round_support(elements: int, mirrored: bool = False, unit: float = 1.0) -
     )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("elements", [6, 8, 12])
 def test_mirrored_and_in_other_units(elements: int):
     """A point from which a search begins may be as near to an element that touches as to one that does not."""

@@ -121,6 +121,7 @@ def test_load_cases_and_paths_are_withheld_too():
         assert path.penetrates_at == (None if holds else end)
 
 
+@pytest.mark.slow
 def test_a_body_that_a_condition_holds_is_not_told_to_be_held():
     """Young's modulus in other units than the load: the message states it, and asks for no other condition."""
     edges = [{"name": name, "start": start, "elements": 8} for name, start in

@@ -50,6 +50,7 @@ def bulge(pressure):
     return NU * (1 + NU) * pressure * SIDE / E
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(st.floats(1, 400), st.floats(0.0005, 0.3), st.floats(0, 6.28), st.sampled_from([1e-3, 1.0, 1e3]))
 @example(40.0, 0.02, 0.0, 1.0)
@@ -266,6 +267,7 @@ def test_a_tool_carries_a_body_into_a_wall(travel, past):
         assert result.certified
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(
     st.one_of(st.just(0.0), st.tuples(st.sampled_from([-1, 1]), st.floats(-9, -1.1)).map(lambda x: x[0] * 10 ** x[1])),
@@ -293,6 +295,7 @@ def test_a_side_that_fits_another_face_of_the_surface_penetrates_it(gap, cut, tu
     assert not any("taken to end" in note or "lies behind" in note for note in result.notes)
 
 
+@pytest.mark.slow
 @settings(max_examples=8, deadline=None)
 @given(st.one_of(st.just(0.0), st.floats(-9, -3).map(lambda power: 10**power)), st.integers(0, 3))
 @example(0.0, 0)
@@ -332,6 +335,7 @@ def test_a_straight_face_may_end_where_its_zone_ends(beyond, ended):
     assert all("'1' lies in it" in note and "'floor'" in note for note in notes)
 
 
+@pytest.mark.slow
 @settings(max_examples=15, deadline=None)
 @given(
     st.one_of(st.just(0.0), st.floats(-9, -4).map(lambda power: 10**power)),
@@ -374,6 +378,7 @@ def test_a_surface_does_not_end_where_it_goes_on(gap, between, turn, kind):
         assert result.penetration.edge in ("1", "2")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "side", [[[-60, -5], [-60, 0], [-40, 0], [-40, -5]], [[-60, -5], [-60, 0], [-40, 0], [-39, -5]]]
 )
@@ -448,6 +453,7 @@ def test_the_corner_of_a_table_between_two_nodes_is_found(end, elements, pressur
         assert not result.certified
 
 
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @given(
     st.floats(0.8, 2.0), st.floats(3, 6), st.floats(1.5, 3), st.sampled_from([0.0, 3.5e-4, 1e-3]), st.floats(0.05, 0.2)
@@ -593,3 +599,23 @@ def test_a_body_that_passes_into_another_one_without_a_contact_is_found(travel: 
     assert not result.certified
     for word in ("'block'", "'post'", "No contact between them is stated"):
         assert word in result.penetration.words
+
+
+def test_a_punch_that_turns_ends_where_its_zone_does():
+    """Its face turns with it and would cut into the edges beside its zone, which lie in the face as it is drawn."""
+    corners = {"bottom": (-20, -20), "right": (20, -20), "beside": (20, 0), "face": (5, 0), "other": (-5, 0),
+               "left": (-20, 0)}  # fmt: skip
+    stated = Problem(
+        name="punch that turns",
+        material={"young_modulus": 1000, "poisson_ratio": 0.3},
+        boundary={"outer": [{"name": name, "start": at, "elements": 8} for name, at in corners.items()]},
+        conditions={"bottom": {"displacement": {"x": 0.1, "y": 0}}},
+        contact_zones={"face": {"edges": "face", "surface": {"kind": "plane", "point": (0, 0), "normal": (0, -1)}}},
+        tools={"punch": {"zones": "face", "point": (0, 0), "force": {"y": -100, "moment": 200}}},
+        accuracy=None,
+    )  # pyright: ignore[reportArgumentType]
+    result = solve(stated)
+    assert result.certified
+    turn = result.contact.tools.displacement(result.solution.rigid_amplitudes)[0, 2]
+    assert turn > 1e-3  # at the end of the block the face would be 1 % of this deep in it
+    assert [note for note in result.notes if "is taken to end at (-5, 0)" in note]  # on the side that goes down

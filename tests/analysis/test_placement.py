@@ -64,6 +64,7 @@ def stated_change(result):
     return changes[0] if changes else 0.0
 
 
+@pytest.mark.slow
 @settings(max_examples=6, deadline=None, phases=QUICK)
 @given(st.floats(0.15, 4), st.floats(0, 360), st.sampled_from([1e-3, 1.0, 1e3]))
 @example(2.0, 270.0, 1.0)
@@ -85,6 +86,7 @@ def test_the_change_of_a_peak_is_that_of_hertz(clearance, turn, size):
         assert result.penetration.kind is Misfit.MOVED
 
 
+@pytest.mark.slow
 @settings(max_examples=6, deadline=None, phases=QUICK)
 @given(st.floats(0.15, 4), st.floats(0, 360), st.floats(0.1, 1), st.sampled_from([1e-3, 1.0, 1e3]))
 @example(2.0, 270.0, 1.0, 1.0)
@@ -96,6 +98,7 @@ def test_a_shaft_may_be_drawn_anywhere_above_its_bore(clearance, turn, part, siz
     assert drawn.peak.pressure == pytest.approx(there.peak.pressure, rel=2 * RESTING * LEAST_ASKED)
 
 
+@pytest.mark.slow
 @settings(max_examples=2, deadline=None, phases=QUICK)
 @given(st.floats(0.01, 0.5), st.sampled_from([1e-3, 3e-3, None]))
 @example(0.1, 1e-3)
@@ -145,6 +148,7 @@ def block(slide, size=1.0, elements=8):
     return Problem(**data)  # pyright: ignore[reportArgumentType]
 
 
+@pytest.mark.slow
 @settings(max_examples=14, deadline=None, phases=QUICK)
 @given(
     st.one_of(st.floats(0.01, 40), st.floats(4.9, 6.5)), st.sampled_from([1e-3, 1.0, 1e3]), st.sampled_from([2, 8, 15])
@@ -180,6 +184,7 @@ def test_a_path_has_surfaces_where_they_are_touched_at_its_end():
     )
 
 
+@pytest.mark.slow
 def test_a_path_whose_end_is_elsewhere_says_it():
     """A roller slides by half of its radius over a block; at the begin its normals are those of the end."""
     path = follow(roller_moved_aside(0.0), "tools.roller.displacement.x", 1.5)
@@ -298,6 +303,7 @@ def test_a_flat_block_slides_on_round_supports(power, radius, sense, size):
     assert "translation along (1, 0)" in result.penetration.words
 
 
+@pytest.mark.slow
 @settings(max_examples=3, deadline=None, phases=QUICK)
 @given(st.floats(-5, -2), st.floats(9, 11.5))
 @example(-2.0, 11.5)
@@ -577,6 +583,7 @@ def test_an_infinite_peak_does_not_withhold_the_certificate():
     assert np.ptp(interval.arc) / 2 == pytest.approx(half, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_small_force_is_judged_by_itself_and_by_statics():
     """A block slides on two round supports to a wall, which must hold all of the side load when they press straight up.
 
@@ -638,6 +645,7 @@ def test_a_roller_in_a_trough_is_held_whatever_the_noise_of_its_mesh(radius, loa
     assert whole == pytest.approx(half, rel=more + less)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("density", [0.024, 0.16])
 def test_a_soft_roller_that_may_spin_has_the_normals_of_a_stiff_body(density):
     """So has half of both, which cannot spin. With its own normals it would have a contact shorter by 1 and 3 %."""

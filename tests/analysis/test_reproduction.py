@@ -36,6 +36,7 @@ def test_numbers_are_those_of_a_run_of_its_own(paper):
         assert direct.degrees_of_freedom == answer.degrees_of_freedom
 
 
+@pytest.mark.slow
 def test_all_is_certified_and_every_reference_is_met():
     paper = on_base_meshes()
     assert paper.reproduced

@@ -339,6 +339,7 @@ def test_a_path_of_the_gap_between_two_bodies_ends_as_a_solve_does():
     assert np.abs(path.path.at(1.0).pressure - end.solution.pressure).max() < 1e-10 * end.solution.pressure.max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("exchanged", [False, True])
 @pytest.mark.parametrize(("modulus", "springs"), [(1e3, False), (1e7, False), (1e3, True)])
 def test_nothing_spins_a_disk_without_friction(modulus, springs, exchanged):
@@ -365,6 +366,7 @@ def test_nothing_spins_a_disk_without_friction(modulus, springs, exchanged):
         assert abs(result.footprint.moments[contact.zone] + 2 * x) < 0.01 * farthest
 
 
+@pytest.mark.slow
 def test_a_body_may_press_on_a_corner_that_is_held():
     """Either side first. Both have the same force and length; the corner of the clamped side takes part."""
     upper = elastic(block((0, 40), (0, 20)), {"top": {"pressure": 30.0}, "right": {"fixed": True}}, 30e3)
@@ -473,6 +475,7 @@ def test_many_motions_that_are_held_at_zero_have_one_note():
     assert all(f"'disk {i}'" in note for i in range(4))
 
 
+@pytest.mark.slow
 def test_three_bodies_that_meet_in_one_point():
     """Two blocks side by side on a base: forces are those of the loads, and corners are looked at in pairs."""
     side = {"pressure": 0.3}
@@ -486,6 +489,7 @@ def test_three_bodies_that_meet_in_one_point():
     assert np.allclose(np.hypot(*forces.T), [0.3, 2.0, 4.0], rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_bodies_that_bulge_into_each_other_below_a_third_are_named():
     """Only they have no contact with each other; the third one has with both."""
     bodies = {
@@ -584,6 +588,7 @@ def test_a_stress_operator_gives_the_stress_of_each_body(bonded):
     assert bound.components.value == pytest.approx(stress.components, rel=1e-6, abs=1e-6 * abs(wanted).max())
 
 
+@pytest.mark.slow
 def test_forces_of_contacts_are_not_summed_over_bodies():
     """A stack under a pressure of 1 on a width of 2: each contact carries 2, on the upper body, and no total is 4."""
     bodies = {
@@ -760,6 +765,7 @@ def test_bonded_bodies_under_a_loaded_tool_are_one_body(surface):
     np.testing.assert_allclose(two, sunk("top", "bottom", **elastic(block((0, 8), (-2, 2)))), rtol=0.003)
 
 
+@pytest.mark.slow
 def test_springs_are_the_limit_of_a_thin_layer():
     """A bonded layer of E = k t and ν = 0 has the stiffness k across and k/2 along: the rest falls with t."""
     k, own, zone = 100.0, elastic(block((0, 8), (0, 2))), {"surface": {**ROUND, "center": [4, 102], "radius": 100}}
@@ -853,6 +859,7 @@ def test_a_disk_holds_on_a_line_of_two_edges(turned):
     assert abs((-c if turned else c) + e - one.footprint.forces["c"][1]) <= allowed["force"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("driven", [True, False])
 def test_a_roller_squeezed_without_a_load_is_held_wherever_its_rim_begins(driven):
     """On a coarse mesh the turn about nearly its middle seems to open one gap, and has no bound: no position to refuse.

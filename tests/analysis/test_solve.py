@@ -178,6 +178,7 @@ def test_change_of_units(formulation, length, stress):
     assert abs(gap / length - expected).max() < 1e-9 * reference.contact.scales.displacement
 
 
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @given(st.floats(-3, 3), st.floats(-6, 6))
 def test_any_change_of_units(log_length, log_stress):
@@ -280,6 +281,7 @@ def rocking(step: float, at: tuple[float, float], length: float, stress: float, 
     )  # fmt: skip
 
 
+@pytest.mark.slow
 @settings(max_examples=15)
 @given(
     st.floats(1e-6, 1e-2), st.tuples(st.floats(-5, 5), st.floats(-5, 5)), st.floats(-6, 6), st.floats(-6, 6),
@@ -423,6 +425,7 @@ def test_polish_makes_pressure_off_contact_exactly_zero():
     assert result.footprint.resultant.force == pytest.approx([-2e3 * np.pi, 2e4 * np.pi], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_the_default_imports_no_optimization_package():
     """Each answer but QP3 and models, on a mesh that is found too: cvxpy takes half a second, and nothing needs it."""
     code = """

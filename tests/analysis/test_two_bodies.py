@@ -105,6 +105,7 @@ accuracy: 1e-2
 """)
 
 
+@pytest.mark.slow
 def test_contact_of_a_receding_layer_is_as_long_under_any_load():
     """Without a gap nothing has the dimension of a pressure but the load: pressures go with it, lengths do not."""
     lengths, peaks = [], []
@@ -127,6 +128,7 @@ BLOCK = """
         - {name: axis}"""
 
 
+@pytest.mark.slow
 def test_sides_may_be_exchanged():
     """The answer is one but for error bars, and the end of contact on one side is the pair of that on the other.
 

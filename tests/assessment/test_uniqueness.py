@@ -312,6 +312,7 @@ def test_two_surfaces_at_each_node_of_a_held_body():
     assert singular > 20
 
 
+@pytest.mark.slow
 def test_three_rods_under_one_edge_are_certified():
     """Each node of the edge is a point of all three rods, and most of these points no state can press on."""
     rods = {

@@ -93,6 +93,7 @@ def beside_a_half(kinds, slope, n):
     return [float(np.abs(part).max() / scale) for part, scale in zip((pressures, gaps), scales, strict=True)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kinds", ARRANGEMENTS)
 @pytest.mark.parametrize("slope", [1.0, -4.0])
 def test_equal_halves_are_one_of_them_on_a_plane(kinds, slope):

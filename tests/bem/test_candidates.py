@@ -40,6 +40,7 @@ def problem_of(edges, zones, loaded=PRESSURE, **more):
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(
     angles=st.lists(st.floats(0.6, 1.4), min_size=6, max_size=6),
@@ -290,6 +291,7 @@ def sealed(quarter):
     })  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_zones_of_one_edge_have_their_own_pressures_at_a_node():
     """The last point of one plane is a node of an element of the other one, whose pressure there is not overwritten.
 

@@ -94,6 +94,7 @@ def ensure_the_same(system):
     assert (abs(b - d).max(axis=0) <= 1e-13 * abs(d).max(axis=0)).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("refine", [1, 2])
 @pytest.mark.parametrize("name", SHIPPED)
 def test_machine_code_and_numpy_agree_on_shipped_models(name, refine):

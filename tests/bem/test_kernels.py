@@ -73,6 +73,7 @@ def components_of(reference: np.ndarray) -> np.ndarray:
     return np.concatenate([result.T[..., 0], result.U[..., 0]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_integrals_near_an_element_are_exact(element):
     """To 1e-12 from three element lengths down to 1e-9 of one, on both sides, beside the element and beyond it."""

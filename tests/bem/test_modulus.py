@@ -112,6 +112,7 @@ def test_one_material_of_two_bodies_is_the_modulus_of_both():
     assert np.abs(whole.rising.pressure - expected).max() < 1e-9 * np.abs(expected).max()
 
 
+@pytest.mark.slow
 def test_hertz():
     """The peak goes with the square root of E*: d ln p / d ln E is 1/6 for the hard and 1/3 for the soft cylinder.
 

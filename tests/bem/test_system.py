@@ -272,6 +272,7 @@ def sizes_as_drawn(held, load):
     return sizes_of(held_body(held, load), 1.0, 1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("held", [("left",), ("right",), ("left", "right")])
 @pytest.mark.parametrize("load", ["gravity", "centrifugal", "temperature"])
 @settings(max_examples=4, deadline=None)

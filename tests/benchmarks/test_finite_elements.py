@@ -152,6 +152,7 @@ def test_tables_in_the_models_are_those_of_the_benchmark(press_together):
     assert press_together(1).pressure_at(at) == pytest.approx(pressure, abs=3e-4 * pressure.max())
 
 
+@pytest.mark.slow
 def test_values_in_the_models_are_those_of_the_benchmark():
     """On the coarsest mesh: starts within 0.001 of degrees and cm, peaks within 1e-4, and what the files round off."""
     start = loaded(MODELS / "bolt_in_plate.yaml").reference["finite elements, start"].start

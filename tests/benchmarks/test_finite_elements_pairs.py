@@ -138,6 +138,7 @@ def test_limits_of_peak_and_end():
     assert uncertain == pytest.approx([1 / 16, 1 / 4])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "load"), [("layer", 0.5), ("pin, 135 N/mm", 135.0)])
 def test_both_statements_of_a_problem_are_the_same(name: str, load: float):
     """On the coarsest mesh and with an accuracy of 1e-2; the meshes of the table agree to 1e-4.

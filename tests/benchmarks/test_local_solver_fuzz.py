@@ -126,6 +126,7 @@ def test_no_claim_is_false_in_any_units_and_a_restart_at_an_answer_moves_nothing
     assert not [name for name in outcomes(seed) if any(bad in name for bad in BAD)]
 
 
+@pytest.mark.slow
 @settings(max_examples=150)
 @given(st.integers(0, 10**9))
 @example(1014709)
@@ -137,6 +138,7 @@ def test_no_claim_is_false_at_degenerate_points_at_the_edge_of_copositivity(seed
     assert not [name for name in outcomes(seed, degenerate=True) if any(bad in name for bad in BAD)]
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(st.integers(0, 10**9))
 @example(124)
@@ -151,6 +153,7 @@ def test_rounding_in_place_of_zeros_makes_no_minimizer(seed):
     assert judge(program, units, solved(program, units, start, None)) is not Verdict.FALSE_MINIMIZER
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(st.integers(0, 10**9))
 @example(215)
@@ -167,6 +170,7 @@ def test_a_flat_ray_that_falls_has_no_end_in_any_units(seed):
     assert judge(program, units, result) is not Verdict.FALSE_UNBOUNDED
 
 
+@pytest.mark.slow
 @settings(max_examples=150)
 @given(st.integers(0, 10**9))
 @example(1107)
@@ -209,6 +213,7 @@ def test_rows_that_are_parallel_up_to_1e_7_have_no_false_claim(seed):
     assert "false" not in judge(program, units, solved(program, units, start, None))
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(st.integers(0, 10**9))
 def test_units_change_no_verdict_of_convex_programs(seed):

@@ -122,6 +122,7 @@ def test_a_closed_pipe_is_no_traceback(block: Path):
         assert answer.stderr == ""
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").is_char_device(), reason="there is no device that is always full")
 @pytest.mark.parametrize("command", ["solve BLOCK", "solve BLOCK --json -", "schema", "--help"])
 def test_a_full_disk_is_one_clear_error(block: Path, command: str):
@@ -130,6 +131,7 @@ def test_a_full_disk_is_one_clear_error(block: Path, command: str):
     assert (answer.returncode, answer.stderr) == (2, "error: standard output: No space left on device\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("command", "encoding"), [("check", "ascii"), ("solve", "cp1252")])
 def test_missing_letters_of_a_terminal_are_replaced(block: Path, command: str, encoding: str):
     block.write_text(BLOCK.replace("block on a table", "блок on a table"), encoding="utf-8")
@@ -167,6 +169,7 @@ def test_the_program_runs_as_a_module():
         assert answer.stdout or answer.stderr
 
 
+@pytest.mark.slow
 def test_no_color_is_respected(block: Path):
     colored = in_a_process("check", block, FORCE_COLOR="1", NO_COLOR="")
     plain = in_a_process("check", block, FORCE_COLOR="1", NO_COLOR="1")

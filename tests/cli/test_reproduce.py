@@ -29,6 +29,7 @@ def test_it_runs_from_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     assert [*tmp_path.iterdir()] == []
 
 
+@pytest.mark.slow
 def test_a_table_a_page_and_its_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """Of one problem on its base mesh, whatever is asked for."""
     monkeypatch.setattr(analysis, "reproduce", lambda *_: of_the_cylinder())

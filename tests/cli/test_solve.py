@@ -226,6 +226,7 @@ def test_options_are_looked_at_before_the_file(tmp_path: Path):
     assert_refused(run("solve", tmp_path / "none.yaml", "--penalty", "-1"), "the penalty must be a number")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("penalty", ["1e-8", "1", "1e8"])
 def test_the_ends_of_the_range_of_penalties_are_plain_numbers(block: Path, penalty: str):
     """Warnings are errors here; JSON knows no NaN."""
@@ -268,6 +269,7 @@ STATED = "stated mesh"
 CASES = ["off the middle", "raised", "edge of the kern", "off the middle and raised"]
 
 
+@pytest.mark.slow
 def test_solve_without_case_solves_all():
     answer = run("solve", GALLERY / "roller_in_v_block.yaml")
     assert answer.exit_code == 0, answer.stderr
@@ -342,6 +344,7 @@ def test_a_case_that_contact_cannot_hold_is_located(command: str, tmp_path: Path
     assert_states(answer.stderr, f"press.yaml:{line}:19: load_cases.off the middle: … 'press'")
 
 
+@pytest.mark.slow
 def test_out_writes_a_page_with_the_stress_asked_for(block: Path, tmp_path: Path):
     """The page and its tables; a folder with other files is refused before any work, and so is an unknown stress."""
     place = tmp_path / "result"

@@ -87,6 +87,7 @@ def test_a_folder_gets_page_tables_and_journal(tmp_path: Path):
     assert len((place / JOURNAL).read_text(encoding="utf-8").splitlines()) == 1 + 3
 
 
+@pytest.mark.slow
 def test_check_and_help_import_nothing_of_studies():
     """Nor does solve: a study's packages are for studies."""
     slow = ("distributed", "dask", "pyarrow", "bemcontact.studies.work", "bemcontact.runs.study")

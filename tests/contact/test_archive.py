@@ -143,6 +143,7 @@ def test_bytes_that_change_give_an_error_or_the_same_problem(which: str, data: s
     assert found is None or same(found, PLAIN if which == "plain" else BODY)
 
 
+@pytest.mark.slow
 @settings(max_examples=100)
 @given(which=st.sampled_from(["plain", "body"]), data=st.data())
 def test_members_that_change_give_an_error_or_the_same_problem(
@@ -166,6 +167,7 @@ def test_members_that_change_give_an_error_or_the_same_problem(
     assert found is None or same(found, PLAIN if which == "plain" else BODY)
 
 
+@pytest.mark.slow
 @settings(max_examples=80)
 @given(which=st.sampled_from(["plain", "body"]), way=st.integers(0, 8), seed=st.integers(0, 99), data=st.data())
 def test_a_false_problem_with_a_true_checksum_is_refused_or_solvable(

@@ -203,6 +203,7 @@ def test_a_moment_has_its_unit(turns: bool, size: str):
     assert size in (words or "")
 
 
+@pytest.mark.slow
 @settings(max_examples=8, deadline=None)
 @given(
     st.lists(st.sampled_from([0.1, 0.2, 0.3, 0.7, 1 / 3, 1.1]), min_size=2, max_size=4),

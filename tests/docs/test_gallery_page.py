@@ -53,6 +53,7 @@ def test_page_is_what_the_command_writes(gallery: ModuleType):
     agree(gallery.page(), PAGE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", ["README.md", ".docs/validation/closed_forms.md"])
 def test_tables_of_errors_are_what_the_command_writes(gallery: ModuleType, page: str):
     text = (ROOT / page).read_text(encoding="utf-8")

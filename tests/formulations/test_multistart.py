@@ -184,6 +184,7 @@ def test_free_bodies_in_equilibrium_have_one_end(statement, k):
         assert_right(problem, ends(problem, statement), truth)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("penalty", [1.0, 10.0])
 @pytest.mark.parametrize("k", [1, 2])
 def test_free_bodies_out_of_equilibrium_have_spurious_ends(k, penalty):

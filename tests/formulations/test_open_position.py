@@ -95,6 +95,7 @@ def block_under_ridge(length: float, stress: float) -> Problem:
     )
 
 
+@pytest.mark.slow
 def test_units_do_not_move_a_body_that_contact_leaves_open():
     """The same block in seven systems of units: the same position, note and verdict."""
     units = [(1, 1), (1e-9, 1e-9), (10, 1), (10, 1e9), (7, 1), (1e9, 1e-9), (3, 1e9)]

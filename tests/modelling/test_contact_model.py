@@ -177,6 +177,7 @@ def test_an_addition_that_breaks_contact_is_reported():
     np.testing.assert_allclose(idle.pressure, free.pressure, atol=1e-5 * p_max)
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(seed=st.integers(0, 10**6), motions=st.sampled_from([1, 3]), power=st.integers(6, 12))
 @example(seed=5, motions=3, power=6)
@@ -220,6 +221,7 @@ def test_a_limit_is_infeasible_exactly_if_the_load_cannot_be_carried_under_it(se
     assert ("cannot be satisfied" in result.words) == (share < 1)
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(seed=st.integers(0, 10**6), n=st.integers(4, 14), motions=st.sampled_from([0, 1, 3]), load=LIGHT)
 @example(seed=3075, n=8, motions=3, load=1.6e-7)
@@ -365,6 +367,7 @@ def test_a_copy_is_a_model_of_its_own_with_the_same_values(copied, solved, conta
     assert limited.status is Status.SOLVED
 
 
+@pytest.mark.slow
 def test_variables_of_another_process_are_not_those_of_a_model_that_was_read():
     """Each process counts the variables of cvxpy from one on."""
     written = pickle.dumps(bemcontact.model(random_contact(4, 6, 1)))
@@ -505,6 +508,7 @@ def stationarity(contact: CondensedContact, model, p: np.ndarray, cap: cp.Constr
     return np.abs(sum(terms)).max() / np.abs(terms).max(), (np.abs(over_a) / size).max(initial=0.0)
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(
     seed=st.integers(0, 1000),

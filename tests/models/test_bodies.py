@@ -41,6 +41,7 @@ def test_the_reference_of_the_cantilevers_is_beam_theory():
     assert stated.peak == pytest.approx(np.sqrt(force * 105e3 / (np.pi * 25)), abs=5e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("length", [100.0, 70.0, 50.0])
 def test_cantilevers_share_their_load_as_beams_do(length: float):
     """With clamps nearer to the nose, the upper one is 10, 7 and 5 heights h long. Beam theory is off by 0.17 (h/l)².

@@ -114,6 +114,7 @@ def wandering_load(rng: np.random.Generator) -> tuple[CondensedContact, Condense
     return start, end
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("made", [coarse_path, wandering_load])
 def test_degenerate_paths_are_those_of_exhaustive_search(made):
     """Pressures are of size 1; on springs of compliance 1e-4, the stiffest, the search allows 1e-5 of them."""
@@ -275,6 +276,7 @@ def loose_path(seed: int) -> tuple[CondensedContact, CondensedContact] | None:
     return first, last
 
 
+@pytest.mark.slow
 def test_positions_that_contact_leaves_open_are_those_of_solutions():
     """Between breakpoints: the rule chooses the same position on a path and in a solution, and the path goes on."""
     opened = 0

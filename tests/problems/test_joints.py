@@ -42,6 +42,7 @@ def plate(cuts: list[list[float]], hole: list[float], begin: int = 0, first: flo
 shares = st.lists(st.floats(0.01, 0.99).map(lambda x: round(x, 3)), max_size=3, unique=True)
 
 
+@pytest.mark.slow
 @given(st.tuples(shares, shares, shares, shares), st.lists(st.integers(-359, -1), max_size=3, unique=True), st.data())
 def test_cuts_are_undone(cuts: tuple[list[float], ...], hole: list[int], data: st.DataObject):
     """Four sides and one circle are left, of the same length and conditions; and nothing more can be undone."""
@@ -142,6 +143,7 @@ def bars_of(outer: list[dict], surfaces: list[dict], aside: float) -> np.ndarray
     return np.array([(bar.value, bar.bar) for bar in bars if bar.bar is not None], float)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("surfaces", "aside"), [(V_BLOCK, 0.3), (V_BLOCK, 0.0), (BORE, 0.0)])
 @pytest.mark.parametrize("kind", [{"kind": "arc", "radius": 10}, {"kind": "ellipse", "semi_axes": [10, 9.5]}])
 def test_a_closed_edge_has_the_same_bars_wherever_it_begins(surfaces: list[dict], aside: float, kind: dict):
@@ -191,6 +193,7 @@ def test_a_ring_begins_on_one_side_inside_and_outside():
         assert bore.length == pytest.approx(12 * np.pi)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("begin", [0.0, 17.3, -100.0])
 def test_a_rim_that_is_equally_far_over_a_stretch_begins_on_it(begin: float):
     """In a bore around the same center the gap is 0.01; the floor below, at a gap of 0.002, is nearer at the bottom."""

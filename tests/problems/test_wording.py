@@ -153,6 +153,7 @@ def _read(text: str) -> float | None:
     return READERS[tag](text) if tag in (f"{TAG}int", f"{TAG}float") else None
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(st.one_of(
     st.from_regex(r"[-+]?[0-9]{1,9}(_[0-9]{1,9}){0,2}(\.[0-9]{1,6})?(e-?[0-9]{1,3})?", fullmatch=True),

@@ -210,6 +210,7 @@ def test_a_wide_clearance_is_out_of_range():
     assert_states(one.remark, "small clearance; … 0.04 radii: shown, not judged")
 
 
+@pytest.mark.slow
 def test_a_pin_in_the_middle_of_its_hole_needs_the_middle_of_contact():
     """All gaps are equal then, which is another rigid motion of the pin only."""
     spec = pin_in_hole(LOADS[30][0]).replace("center: [0, -0.001]", "center: [0, 0]")

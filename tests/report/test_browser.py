@@ -135,6 +135,7 @@ def test_the_page_is_drawn_whole_and_fits(chromium: Browser, report: Path, width
     assert complaints == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("report", [PAPER], indirect=True)
 def test_a_picture_is_transparent_and_its_ink_follows_the_page(chromium: Browser, report: Path):
     seen = []
@@ -164,6 +165,7 @@ def test_an_animation_is_stopped_by_its_box_and_on_paper_and_where_motion_is_not
     assert complaints == []
 
 
+@pytest.mark.slow
 def test_a_long_number_is_not_cut_on_a_telephone(chromium: Browser, written: Callable[[str], Path]):
     """A force with its error and its unit is wider than what its label leaves of a card."""
     with opened(chromium, written("cases") / "result.html", width=380) as (page, _):

@@ -50,6 +50,7 @@ def test_the_folder_has_page_table_numbers_and_pictures(design: GapDesign, tmp_p
     assert json.loads((tmp_path / "design" / "design.json").read_text(encoding="utf-8")) == design.to_dict()
 
 
+@pytest.mark.slow
 def test_the_table_is_the_design(design: GapDesign):
     head, *rows = csv.reader(io.StringIO(design_csv(design)))
     assert head == ["arc", "x", "y", "profile", "pressure_before_1", "pressure_after_1"]
@@ -74,6 +75,7 @@ def test_each_load_state_has_a_row_with_its_peaks():
     assert "Bound on the" not in text
 
 
+@pytest.mark.slow
 def test_a_peak_that_is_infinite_in_theory_is_no_number_of_the_body(design: GapDesign):
     """A flat punch presses infinitely at its edges; of uncoupled points each has its overlap, and the peak is 3."""
     (state,) = design.before
@@ -117,6 +119,7 @@ def test_a_surface_that_cannot_be_written_is_no_obstacle():
     assert "goes round or is in pieces" in page
 
 
+@pytest.mark.slow
 def test_stress_and_its_limit_are_at_the_head():
     """The limit of 95 MPa is kept to a millionth, where it is reached."""
     text = read(render(designed(), {})).text

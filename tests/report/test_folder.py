@@ -22,6 +22,7 @@ def files(place: Path) -> set[str]:
     return {path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file()}
 
 
+@pytest.mark.slow
 def test_all_files_of_a_report_are_written(written: Callable[[str], Path]):
     study, place = on_one_mesh(), written("block")
     assert files(place) >= {"report.html", "report.json", "contact.npz", "spec.yaml", "figures/pressure.svg"}
@@ -36,6 +37,7 @@ def test_all_files_of_a_report_are_written(written: Callable[[str], Path]):
     assert block().name not in page
 
 
+@pytest.mark.slow
 def test_a_study_written_twice_is_the_same(written: Callable[[str], Path], tmp_path: Path):
     folder.save(on_one_mesh(), tmp_path / "again", SPEC)
     assert files(tmp_path / "again") == files(written("block"))
@@ -43,6 +45,7 @@ def test_a_study_written_twice_is_the_same(written: Callable[[str], Path], tmp_p
         assert (tmp_path / "again" / name).read_bytes() == (written("block") / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_an_earlier_report_is_replaced_with_all_its_files(written: Callable[[str], Path], tmp_path: Path):
     shutil.copytree(written("meshes"), tmp_path / "report")
     assert files(tmp_path / "report") >= {"spec.yaml", "figures/problem.svg", "figures/convergence.svg"}
@@ -59,6 +62,7 @@ def test_a_new_and_an_empty_folder_are_fine(tmp_path: Path):
     assert [*tmp_path.iterdir()] == [tmp_path / "empty"]
 
 
+@pytest.mark.slow
 def test_foreign_files_are_never_lost(tmp_path: Path):
     report = tmp_path / "report"
     folder.save(without_a_body(), report)
@@ -82,6 +86,7 @@ def test_folder_with_a_foreign_report_is_refused(tmp_path: Path, content: str):
         folder.ensure_folder_writable(tmp_path)
 
 
+@pytest.mark.slow
 def test_a_reproduction_is_replaced_as_a_whole(tmp_path: Path):
     place = tmp_path / "paper"
     for paper in (with_coarse_mesh_judged(), of_the_cylinder()):
@@ -93,6 +98,7 @@ def test_a_reproduction_is_replaced_as_a_whole(tmp_path: Path):
     assert [*tmp_path.iterdir()] == [place]
 
 
+@pytest.mark.slow
 def test_folders_of_two_kinds_do_not_replace_each_other(tmp_path: Path):
     folder.save_reproduction(of_the_cylinder(), tmp_path / "paper")
     folder.save(without_a_body(), tmp_path / "report")
@@ -165,6 +171,7 @@ def test_a_killed_run_leaves_the_old_report_or_the_new_one(tmp_path: Path):
     assert int(done.stdout) > 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EACH)
 def test_all_files_of_a_result_are_written(name: str, written: Callable[[str], Path], tmp_path: Path):
     """Page, numbers, tables and pictures; a later result replaces it, and a report does not."""

@@ -259,6 +259,7 @@ def test_the_text_of_each_box_can_be_read_on_its_ground():
         assert 1.05 / (luminance(QUALITY_COLOURS[quality]) + 0.05) >= 4.5
 
 
+@pytest.mark.slow
 def test_an_infinite_peak_is_nowhere_on_the_page():
     """Neither the largest nodal pressure of any solution nor of any mesh, in any form that a number may have."""
     study = with_infinite_peak()

@@ -118,6 +118,7 @@ def test_results_of_each_kind_are_what_their_schema_states():
             schemas.of_result(kind).validate(json.loads(json.dumps(result.to_dict(), allow_nan=False)))
 
 
+@pytest.mark.slow
 def test_reports_of_all_kinds_are_valid_and_nothing_is_left_out(written: dict[str, dict]):
     for report in written.values():
         schemas.of_result("report").validate(report)

@@ -39,6 +39,7 @@ def test_a_notebook_shows_a_picture_and_a_table_without_markup_of_the_user(name)
     assert "&lt;b&gt;bold" in shown
 
 
+@pytest.mark.slow
 def test_the_frame_of_a_result_has_each_contact_point():
     result = items()["result"]
     frame = result.to_frame()
@@ -76,6 +77,7 @@ def test_the_frames_of_a_study_and_a_comparison_have_their_rows():
     assert [*comparison.to_frame().formulation] == ["QP3", "direct"]
 
 
+@pytest.mark.slow
 def test_arrays_have_named_dimensions():
     result, cases, path, study = (items()[name] for name in ("result", "cases", "path", "study"))
     arrays = result.to_xarray()

@@ -45,6 +45,7 @@ def test_rows_are_those_of_solve_and_a_failure_is_one_of_them():
     assert study._repr_html_().count("<tr>") == 7
 
 
+@pytest.mark.slow
 def test_a_folder_has_the_same_numbers_as_the_study(tmp_path: Path):
     study = bemcontact.study(CYLINDER, VARIED, ["peak", "force"], folder=tmp_path / "study")
     names = {path.name for path in (tmp_path / "study").iterdir()}
@@ -59,6 +60,7 @@ def test_a_folder_has_the_same_numbers_as_the_study(tmp_path: Path):
     assert "pulls the body off" in rows[-1]["message"]
 
 
+@pytest.mark.slow
 def test_a_study_in_a_folder_solves_nothing_twice(tmp_path: Path, solved: list[int]):
     place = tmp_path / "study"
     first = bemcontact.study(CYLINDER, VARIED, ["peak"], folder=place)

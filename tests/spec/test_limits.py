@@ -69,6 +69,7 @@ def test_the_depth_that_is_allowed_is_read():
     assert "unknown key 'a'" in refused("a: " + "[" * (DEEPEST - 2) + "]" * (DEEPEST - 2))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -131,6 +132,7 @@ def test_each_edge_has_an_element(elements):
     bemcontact.loads(bottom(f"elements: {MOST_ELEMENTS - 3}"))
 
 
+@pytest.mark.slow
 def test_many_ends_of_elements_need_elements():
     ends = [f"{k / 5000:.4f}" for k in range(1, 5000)]
     line = refused(bottom(f"ends_at: [{', '.join(ends)}]"))

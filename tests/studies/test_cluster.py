@@ -64,6 +64,7 @@ def test_a_cluster_finds_the_same_rows_though_a_worker_is_killed(tmp_path: Path)
     assert sorted(rows, key=lambda row: row.number) == expected
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("default")
 def test_a_scheduler_that_does_not_answer_is_an_error(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(cluster, "PATIENCE", 1)

@@ -163,6 +163,7 @@ def parallel_to_a_power_of_two(seed):
     return (B @ B.T).astype(float), np.ones(n), sizes[:, None] * A, sizes * low, sizes * high, *box
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(seed=st.integers(0, 10**9))
 def test_rows_that_meet_far_away_are_not_called_infeasible(seed):
@@ -238,6 +239,7 @@ def test_rounding_of_large_multipliers_proves_nothing():
     assert result.violation <= 1e-9
 
 
+@pytest.mark.slow
 @settings(max_examples=200, deadline=None)
 @given(seed=st.integers(0, 10**9))
 def test_no_edge_of_nearly_parallel_rows_goes_down_from_a_minimizer(seed):

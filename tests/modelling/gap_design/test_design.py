@@ -132,6 +132,7 @@ def test_no_random_profile_has_a_lower_peak(name):
     assert design.peak <= highest.min() * (1 + 1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_design_is_verified_and_keeps_its_bounds(name):
     """Solved again, certified, pressures as designed to 1e-6; bounds by differences over arc length written here."""
@@ -218,6 +219,7 @@ def test_a_free_profile_makes_the_pressure_of_a_punch_uniform():
     assert abs(relative - contour).max() <= 0.01 * contour.max()
 
 
+@pytest.mark.slow
 def test_uniform_is_another_goal():
     """Free: no deviation at all. Bounded: not above that of the peak's design, whose peak is not above this one's."""
     contact = condensed("flat_punch")
@@ -237,6 +239,7 @@ def test_uniform_is_another_goal():
     assert low.peak <= even.peak * (1 + 1e-9)
 
 
+@pytest.mark.slow
 def test_load_cases_are_load_states():
     contact = tool_contact()
     factors = [{"dead": 1.0}, {"dead": 1.0, "live": 0.5}]
@@ -248,6 +251,7 @@ def test_load_cases_are_load_states():
     assert design.value < design.value_before
 
 
+@pytest.mark.slow
 def test_all_contact_sets_are_one_program_for_cvxpy(monkeypatch):
     """Few problems, each of which cvxpy compiles once: its data change with parameters. None is solved again."""
     solved, chosen = [], []
@@ -278,6 +282,7 @@ def test_progress_has_stages_and_the_starts_that_are_done():
     assert {stage for stage, now in told if not now} >= {"profiles to start from", "lower bound"}
 
 
+@pytest.mark.slow
 def test_a_gentler_profile_that_costs_too_much_is_not_taken(monkeypatch):
     """Bounds near each other and the tolerance of a solver make it dearer; here it is moved by hand."""
     contact, relief = symmetric_punch(), Relief(lower=0, upper=0.05, curvature=0.1)
@@ -291,6 +296,7 @@ def test_a_gentler_profile_that_costs_too_much_is_not_taken(monkeypatch):
     assert design_gap(contact, relief).value == pytest.approx(plain.value, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_units_do_not_matter():
     result = []
     for L, S in ((1.0, 1.0), (1e-9, 1e6)):
@@ -361,6 +367,7 @@ def smallest_gap(contact: CondensedContact, relief: Relief, touching: np.ndarray
     return cp.Problem(cp.Minimize(gap[point]), [*constraints, optimal]).solve(solver=cp.CLARABEL)
 
 
+@pytest.mark.slow
 def test_uniform_design_goes_on_from_all_optimal_profiles_of_a_contact_set():
     """Several profiles are optimal for a contact set, and only some of them touch at the next point.
 
@@ -389,6 +396,7 @@ def symmetric_punch(n: int = 7) -> CondensedContact:
     return replace(contact, points=np.column_stack([x, 0 * x]), arc_position=x + 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("states", "relief"),
     [

@@ -82,6 +82,7 @@ def test_whole_chain_differs_by_the_tilt_of_the_normals():
     assert differences[2] <= 1e-3
 
 
+@pytest.mark.slow
 def test_words_and_numbers():
     design = relieved_punch(1.0)
     without = f"Without it, it is infinite in theory, as at a sharp edge, and {design.peak_before:.5g} on this mesh."
@@ -105,6 +106,7 @@ def test_a_pressure_that_is_not_as_designed_is_reported():
     assert "are not as designed: pressures differ by 1e-02" in wrong.words
 
 
+@pytest.mark.slow
 def test_numbers_in_yaml_have_a_point_before_the_exponent():
     """YAML 1.1 reads 1e-05 as text; all digits are there."""
     design = relieved_punch(0.01)

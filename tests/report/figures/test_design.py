@@ -41,6 +41,7 @@ def test_curves_are_those_of_the_design(design: GapDesign, tmp_path: Path):
     assert (tmp_path / "design.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_a_singular_pressure_runs_out_of_the_picture_and_is_reported(design: GapDesign):
     """Without the profile the peak is infinite but for the mesh: the axis ends far below it."""
     above = figures.figure_of_design(design).axes[0]

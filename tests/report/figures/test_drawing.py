@@ -62,6 +62,7 @@ def test_an_object_draws_into_the_axes_that_it_is_given(name, options, labels):
         assert wanted in (None, found)
 
 
+@pytest.mark.slow
 def test_axes_are_made_where_none_are_given():
     pyplot.switch_backend("agg")
     axes = items()["result"].plot()

@@ -83,6 +83,7 @@ def test_fans_are_as_long_as_their_pressures():
     assert np.array(lengths) / lengths[2] == pytest.approx([0.75, 0.5, 1.0, 0.75], abs=displaced / lengths[2])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 @pytest.mark.parametrize("measure", [StressMeasure.VON_MISES, StressMeasure.YY])
 def test_stresses_have_one_panel_a_case_and_one_scale(name: str, measure: StressMeasure):

@@ -72,6 +72,7 @@ def test_convergence_is_drawn_to_the_limit_with_its_order():
     assert label.endswith(f"order {asymmetry.orders[-1]:.2g}")
 
 
+@pytest.mark.slow
 def test_each_study_has_its_pictures():
     assert {"problem", "pressure", "gap", "deformed"} <= figures.figures_of(on_one_mesh()).keys()
     assert "convergence" in figures.figures_of(on_three_meshes())

@@ -84,6 +84,7 @@ def test_long_and_foreign_names_fit(name: str, tmp_path: Path):
         assert height < 12.5 * 160  # two zones
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
 def test_a_figure_written_twice_is_the_same(tmp_path: Path, ending: str):
     problem = beam_over_a_circle()

@@ -34,6 +34,7 @@ def pictures(link: ParameterPath) -> dict[str, Figure]:
     return figures.figures_of_path(link)
 
 
+@pytest.mark.slow
 def test_page_has_a_picture_of_each_zone(page: Figure):
     labels = [axes.get_ylabel() for axes in page.axes]
     assert labels == ["peak pressure [MPa]", "resultant [N/mm]", *(f"distance along {zone} [mm]" for zone in
@@ -58,6 +59,7 @@ def test_verdict_is_a_sentence(link: ParameterPath):
     assert path_sentence(link).startswith("Each state from 0 to 20 is proved to be the only contact state.")
 
 
+@pytest.mark.slow
 def test_a_path_that_is_too_coarse_between_its_ends_is_drawn(link: ParameterPath):
     """A bar of 1 at one breakpoint makes it too coarse there: the verdict is the last line of the title."""
     bar = ErrorBar(quantity="peak", zone="drum", value=1.0, bar=1.0)
@@ -110,6 +112,7 @@ def test_an_infinite_peak_is_not_drawn():
     assert path.end_accuracy.met
 
 
+@pytest.mark.slow
 def test_the_start_of_a_path_is_at_the_left_though_its_value_falls():
     problem = bemcontact.load(MODELS / "gallery" / "three_zones.yaml", variant="stated mesh")
     unloaded = bemcontact.follow(problem, "conditions.loaded.pressure", 10, start=20)
@@ -153,6 +156,7 @@ def test_breakpoints_with_too_large_an_error_are_hollow(link: ParameterPath):
     assert len(ranges.get_segments()) == len(coarse.pressed)
 
 
+@pytest.mark.slow
 def test_panels_have_one_scale_unless_both_ends_are_hidden_in_it(link: ParameterPath):
     """A beam first touches with its tip, under a pressure 30 times the last one: each panel has its own scale."""
     beam = bemcontact.load(MODELS / "cantilever_flat_surface.yaml", variant="stated mesh")

@@ -72,6 +72,7 @@ def test_cases_beyond_those_that_are_drawn_are_the_ones_with_small_forces():
     assert shown_cases(replace(found(), results=results)) == [str(size) for size in sizes if size > 1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("of_wind", "of_others"), [(None, 4e-3), (2.3e-3, 0.2), (0.5, 1e-4)])
 def test_pictures_write_peaks_with_the_digits_of_the_table(of_wind: float | None, of_others: float):
     """Where a peak has an error bar, its number has no digit beyond it, in curves, in bodies and above them."""
@@ -99,6 +100,7 @@ def test_title_states_both_verdicts():
     assert "mesh: not met, error about " in title
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("ending", "magic"), [(".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF")])
 def test_it_is_saved_in_each_format(ending: str, magic: bytes, tmp_path: Path):
     figures.save(figures.figure_of(found()), tmp_path / f"cases{ending}")
@@ -110,6 +112,7 @@ def test_one_result_has_its_own_figure():
     assert "wind" in figures.figure_of(one).get_suptitle()
 
 
+@pytest.mark.slow
 def test_result_page_has_contact_pressure_gap_and_shape(result: analysis.Result):
     axes = figures.figure_of_result(result).axes
     contact, (shape,) = axes[0], [item for item in axes if "deformed shape" in item.get_title(loc="left")]
@@ -226,6 +229,7 @@ def test_infinite_pressures_are_cut_off_at_three_times_the_mean():
     assert [axes.get_title(loc="left") for axes in contacts] == ["low\ninfinite in foot", "high\ninfinite in foot"]
 
 
+@pytest.mark.slow
 def test_color_of_the_title_is_that_of_the_worse_verdict():
     def color_of(result: analysis.Result) -> str:
         return figures.figure_of(result)._suptitle.get_color()  # pyright: ignore
@@ -244,6 +248,7 @@ def drawn(name: str) -> tuple[analysis.Result, list[Axes]]:
     return result, figures.figure_of_result(result).axes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["gallery/hertz_small", "gallery/flat_punch", "cylinder_on_plane"])
 def test_panels_show_a_small_contact_and_about_its_width_to_either_side(name: str):
     """At least a sixth of the axis is contact; the largest value that is drawn in the frame fills it."""
@@ -373,6 +378,7 @@ def test_contacts_that_are_not_drawn_near_are_told(forces: list[float]):
     assert drawn_near([result])[1:] in page
 
 
+@pytest.mark.slow
 def test_pictures_of_a_long_body_are_aligned():
     page = figures.figure_of_result(analysis.solve(leaves()))
     page.draw_without_rendering()
