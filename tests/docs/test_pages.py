@@ -2,6 +2,8 @@
 
 import re
 import shlex
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -14,6 +16,7 @@ from bemcontact.problems import Problem
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+NOTEBOOKS = [f".docs/tutorials/{name}.md" for name in ("parameter_study", "designed_relief", "own_constraints")]
 EXTRAS = set(PROJECT["optional-dependencies"])
 CI = (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()
 
@@ -156,3 +159,17 @@ def test_sources_that_are_cited_by_author_and_year_are_listed():
     missing = [entry for entry in authors if not any(all(word in item for word in entry) for item in literature)]
     assert not missing
     assert ("Bisshopp", "Drucker", "1945") in authors
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", ["README.md", *NOTEBOOKS])
+def test_an_editor_finds_no_wrong_type_in_a_script(page: str, tmp_path: Path):
+    """The code of README and of each notebook as one script; a notebook shows values that a script would not use."""
+    tokens = pages.tokens(ROOT / page)
+    cells = [token.content for token in tokens if token.info in ("python", "{code-cell} python")]
+    script = tmp_path / "script.py"
+    script.write_text("\n".join(cells), encoding="utf-8")
+    command = [sys.executable, "-m", "pyright", "--pythonpath", sys.executable, "--level", "error", str(script)]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, encoding="utf-8", check=False)
+    assert cells
+    assert done.returncode == 0, done.stdout
