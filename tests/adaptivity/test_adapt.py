@@ -152,6 +152,7 @@ def test_no_peak_is_promised_at_a_punch_whose_end_is_a_corner_of_the_body():
     assert [item.exponent for item in result.singular[0]] == pytest.approx([1 / 2], abs=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angle", [120.0, 145.0])
 def test_the_exponent_at_a_corner_is_that_of_the_wedge(angle: float):
     """A face on a floor beside free faces at an angle ω: 1 - λ with sin 2λω + λ sin 2ω = 0 at both corners."""
@@ -344,6 +345,7 @@ def test_a_mesh_too_coarse_to_show_the_intervals_of_contact_has_no_error_bars():
     assert "error not known" in judged.in_short
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", [cam_nose, partial_load_lifts_off, hertz_full])
 def test_error_bars_of_a_coarse_mesh_hold_the_answer_of_a_fine_one(case: Callable[[], Case]):
     """Every quantity, beside a mesh for a thirtieth of the accuracy, which may be off by its own bars."""

@@ -59,6 +59,7 @@ def test_a_pin_may_be_drawn_at_any_side_of_its_hole(way: tuple[float, float], cl
     assert elsewhere.holds
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("clearance", [1e-3, 1e-5, 1e-8])
 def test_joints_that_are_nearly_opposite_to_each_other(clearance: float):
     """Elements that end at both are short, and grow from there: else the compliance is not definite any more.
@@ -261,6 +262,7 @@ def test_a_roller_that_is_free_to_turn_presses_straight_down(x: float):
     assert result.forces["top"] == pytest.approx((0, -10), abs=0.025)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("drawn", "height"), [(1.0, 3.0), (0.0, 3.0), (0.5, 3.0), (0.0, 0.0)])
 @pytest.mark.parametrize("kind", ["plane", "circle"])
 def test_a_tool_rolls_on_a_dome_to_where_the_force_passes_through_its_point(kind: str, drawn: float, height: float):
@@ -358,6 +360,7 @@ def test_contacts_that_move_together_may_press_alone():
     assert slid.forces["right"] == pytest.approx(there.forces["right"], abs=0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", [(0.0, 0.0), (0.3, 0.1), (-0.3, 0.2), (0.1, -0.1)])
 def test_a_roller_may_be_drawn_beside_its_seat(place: tuple[float, float]):
     """Two round bars hold it by forces along the lines through the centers: statics. It rolls in by many steps."""

@@ -256,6 +256,7 @@ HELD = {"top": {"pressure": PRESSURE}}, {"bottom": {"displacement": {"y": 0}}, "
 """Conditions of two blocks that are bonded on one half of their common line."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("modulus", "elements"), [(200.0, None), (5000.0, None), (5000.0, 4)])
 def test_pressure_beside_a_bond_of_different_materials_is_infinite(modulus: float, elements: int | None):
     """Like the root, as the shear of the bond: K = |β| times its intensity there, from any mesh.

@@ -75,6 +75,7 @@ def test_a_flat_side_on_knife_edges_is_not_hardly_held_but_not_at_all():
     assert "only slopes" not in notes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angle", [0.0, 30.0, 90.0])
 def test_a_flat_side_on_round_supports_is_hardly_held_along_it(angle: float):
     """Circles at half the span: at the contact places, s from their tops, normals have the slopes s / R."""
@@ -166,6 +167,7 @@ def notes(problem: bemcontact.Problem, start: str) -> list[str]:
     return [note for note in result.notes if note.startswith(start)]
 
 
+@pytest.mark.slow
 def test_few_points_are_reported_of_each_contact():
     """Two feet with a few points each, enough of them together; on finer elements there are enough on each."""
     told = notes(table(), FEW)
@@ -179,6 +181,7 @@ def test_points_across_the_seam_are_of_one_contact():
     assert notes(ring(90), FEW) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("elements", "told"), [(2, True), (24, False)])
 def test_long_elements_beyond_a_pressed_corner_are_reported(elements, told):
     """On the axis: the peak is off by a third beside the long ones, and a mesh that is found has none."""

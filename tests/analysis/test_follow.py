@@ -97,6 +97,7 @@ def test_gravity_is_a_parameter(cylinder: Problem):
     assert apart(problem, problem, found.path.at(1 / 3).pressure) <= 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("backwards", [False, True])
 def test_free_body_without_load_is_found_from_the_other_end(cylinder: Problem, backwards: bool):
     """Nothing presses the cylinder at 0, and it cannot be condensed; by linearity the load there is zero exactly."""

@@ -40,6 +40,7 @@ def test_half_plane_with_sheared_contact():
     assert sheared_hertz(0.0) == pytest.approx(HERTZ, rel=2e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-3])
 @pytest.mark.parametrize("width", [0.003, 0.03])
 def test_largest_shear_below_hertz(width: float, accuracy: float):

@@ -68,6 +68,7 @@ def block(pressure: float, modulus: float = 7.0, size: float = 1.0, **more: obje
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=12)
 @given(
     share=st.sampled_from([0.04, 0.06, 0.24, 0.26, 0.9, 5.0]), modulus=st.sampled_from([1e-6, 7.0, 1e9]),

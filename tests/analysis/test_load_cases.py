@@ -91,6 +91,7 @@ def test_combination_is_what_a_spec_without_load_cases_finds(stated: Spec, cases
     assert same(where(one), where(other), 1e-11)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["wind", "heat", "settle", "spin", "push", "all"])
 def test_cases_condensed_together_are_those_condensed_alone(name: str):
     """`solve_cases` condenses once, `solve` with a case each time; the answers are the same numbers to round-off.
@@ -520,6 +521,7 @@ def lift_off(contact: analysis.CondensedContact) -> tuple[float, float]:
     return low, float(x[beside] - x[last])
 
 
+@pytest.mark.slow
 def test_far_edge_lifts_off_at_half_of_the_half_width():
     """At a/2 = 2.5 within the spacing of nodes at the edge; of first order in it, 0.1 % off for the block."""
     found = [lift_off(punch(refine)) for refine in (1, 2, 4)]

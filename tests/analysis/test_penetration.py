@@ -425,6 +425,7 @@ def test_interference_that_is_drawn_is_as_one_that_a_tool_makes(power, turn, bot
         assert drawn.penetration.depth == pytest.approx(displaced.penetration.depth, rel=1e-6)
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(st.floats(4, 9), st.integers(2, 9), st.floats(5, 40), TURNS)
 @example(6.0, 2, 40.0, 0.0)
@@ -471,6 +472,7 @@ def test_zones_on_one_surface_are_as_one_zone(angle, width, height, off, share):
     assert one.certified is three.certified
 
 
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @given(st.lists(st.floats(-1, 1), min_size=8, max_size=8), st.floats(-12, -6))
 @example([0.3, -0.5, 0.6, 0.8, -0.2, -0.7, 0.1, 0.4], -8)
@@ -514,6 +516,7 @@ def test_a_spot_where_no_node_touches_is_seen_however_far_the_nodes_are():
     assert result.penetration.zone == "stop"
 
 
+@pytest.mark.slow
 @settings(max_examples=8, deadline=None)
 @given(st.floats(0.2, 0.8), st.floats(0.2, 3.0), st.floats(0, 6.28), st.sampled_from([1e-3, 1.0, 1e3]))
 @example(0.5, 0.97, 0.0, 1.0)

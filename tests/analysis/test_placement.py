@@ -174,6 +174,7 @@ def test_pressure_where_no_surface_is_left_is_not_certified(slide, size, element
         assert not noted
 
 
+@pytest.mark.slow
 def test_a_path_has_surfaces_where_they_are_touched_at_its_end():
     """The shaft sinks by its gap whatever its weight is: it is certified all along, with the peak of Hertz, like √."""
     path = follow(shaft(2.0, sinks=2.0), "loads.gravity.density", 2.0)

@@ -105,6 +105,7 @@ def strut(kind: str, part: float, **more) -> Problem:
     return strip({**conditions, **more.pop("conditions", {})}, **heat, **more)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", STRUTS)
 @pytest.mark.parametrize("part", [0.1, 0.3, 0.9, 1.1, 2.5])
 def test_buckling_is_that_of_euler(kind: str, part: float):

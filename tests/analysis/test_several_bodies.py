@@ -301,6 +301,7 @@ def test_an_interference_moves_no_body_away(scale):
     assert result.penetration is None
 
 
+@pytest.mark.slow
 def test_faces_of_a_slot_press_on_each_other_as_on_the_plane_between_them():
     """Two arms, symmetric about y = 1: each has half of the body with a rigid plane as its other half."""
     arms = polygon(
@@ -502,6 +503,7 @@ def test_bodies_that_bulge_into_each_other_below_a_third_are_named():
     assert "between: [a, b]" in penetration.words or "between: [b, a]" in penetration.words
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("down", [0.55, 0.6])
 def test_an_edge_of_which_a_part_may_touch_is_not_said_to_be_in_no_zone(down):
     """A soft quarter disk comes to lie flat where its gap as drawn is more than 3 % of its size."""
@@ -748,6 +750,7 @@ def test_bonded_bodies_have_one_point_where_their_joint_meets_another_body(order
     assert len({*by_zone(one)[2][joint]}) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("surface", [FLAT, ROUND])
 def test_bonded_bodies_under_a_loaded_tool_are_one_body(surface):
     """Nothing but contact holds them: the tool, and both bodies together, move freely."""

@@ -403,6 +403,7 @@ contact_zones:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", ["qp1", "qp2"])
 def test_wide_gaps_do_not_reduce_the_accuracy_of_pressure(formulation):
     """The wheel laid far into a groove, three free motions, gaps of thousands of scales: the direct solver's answer."""
@@ -413,6 +414,7 @@ def test_wide_gaps_do_not_reduce_the_accuracy_of_pressure(formulation):
     assert abs(result.solution.pressure - direct.solution.pressure).max() < 1e-9 * peak
 
 
+@pytest.mark.slow
 def test_polish_makes_pressure_off_contact_exactly_zero():
     """A wheel laid far into a groove, three free motions: p is exactly zero off two contacts, and no note is wrong."""
     result, direct = bemcontact.solve(bemcontact.loads(WHEEL), "qp3"), bemcontact.solve(bemcontact.loads(WHEEL))

@@ -12,6 +12,7 @@ from bemcontact.contact.stress import StressPeak
 MODELS = Path(__file__).parents[2] / "models"
 
 
+@pytest.mark.slow
 def test_bar_contains_hertz():
     """0.3003 p0 (Johnson, section 4.2) but for 0.1 %: the normals of the circle, and the mean stress of the block.
 

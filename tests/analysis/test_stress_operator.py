@@ -42,6 +42,7 @@ def test_it_gives_the_stress_of_the_result(name: str):
     assert abs(difference).max() < 1e-13 * abs(result.contact.compliance).max()
 
 
+@pytest.mark.slow
 def test_round_off_on_short_elements():
     """Along the boundary digits of displacement are lost: its round-off over the length of an element is a strain.
 

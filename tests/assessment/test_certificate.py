@@ -211,6 +211,7 @@ def exact_pressure(problem: CondensedContact) -> list[Fraction] | None:
     return None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(10))
 def test_fewer_points_than_motions_carry_what_round_off_leaves_only_with_others(seed):
     """Two points carry a load in three motions, but for its round-off, which other points must carry.

@@ -151,6 +151,7 @@ def test_a_corner_that_stands_on_a_third_face_has_three_points():
     np.testing.assert_allclose(body.points.tributary[at_corner[2]], 2 * 0.5 / 6, rtol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("corner", [0.4, 1.4])
 def test_a_tool_and_the_surface_itself_may_be_displaced(corner):
     """The tool's displacement changes the gaps of both faces of a corner as a shift of the surface does."""

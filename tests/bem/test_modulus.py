@@ -74,6 +74,7 @@ def relative_sum(problem: Problem, rates: Sensitivities, *keys: str) -> np.ndarr
     return np.sum([stated_value(problem, key) * rates[key].rising.pressure for key in keys], axis=0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [("disk/under", "wall/top"), ("wall/top", "disk/under")])
 @pytest.mark.parametrize("change", [0.0, 10.0])
 def test_modulus_of_each_of_two_bodies_against_differences(order: tuple[str, str], change: float):
@@ -145,6 +146,7 @@ def bonded() -> Problem:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_modulus_of_each_of_two_bonded_bodies_against_differences():
     """The compliance of a layer and its support is no multiple of 1/E of either."""
     moduli = [f"bodies.{body}.material.young_modulus" for body in ("up", "layer", "low")]
@@ -155,6 +157,7 @@ def test_modulus_of_each_of_two_bonded_bodies_against_differences():
     assert np.abs(rest).max() < 1e-8 * largest
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("held", [{"normal": 3e3, "tangent": 500.0}, {"normal": 3e3}])
 def test_modulus_of_a_body_on_springs_and_of_one_beside_it_against_differences(held: Spec):
     """Springs do not become stiffer with the body; temperature strains it by the same, and without a tangent it slides.

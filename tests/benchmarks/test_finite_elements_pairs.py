@@ -104,6 +104,7 @@ def test_a_much_stiffer_body_is_a_rigid_surface():
     assert touch.pressure == pytest.approx(alone.pressure, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_hertz():
     """A cylinder of radius 8 on a block, E = 1000 and 500. What is left goes with (1 - 2ν) b/R, of a b/R = 0.03."""
     half_width = 0.24

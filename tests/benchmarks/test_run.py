@@ -160,6 +160,7 @@ def test_actions_run_in_turns():
     assert set(times) == {"a", "b"}
 
 
+@pytest.mark.slow
 def test_a_path_is_compared_with_a_solve_at_each_breakpoint():
     """Two springs of compliance 1 that close at loads 1 and 3: breakpoints at 0, 1/4, 3/4 and the end of the load 4."""
     springs = CondensedContact.from_compliance(np.eye(2), [1.0, 3.0])

@@ -46,6 +46,7 @@ def test_check_prints_the_facts(block: Path):
     assert max(map(len, answer.stdout.splitlines())) <= 100
 
 
+@pytest.mark.slow
 def test_check_starts_without_solvers(block: Path):
     """It meshes the body and balances its loads, with NumPy alone for a body that is free in one way."""
     scipy = tuple(f"scipy.{name}" for name in ("linalg", "optimize", "sparse", "special", "interpolate"))

@@ -107,6 +107,7 @@ def test_an_interrupt_of_the_imports_is_no_traceback(handler: str, status: int):
     assert (answer.returncode, answer.stderr) == (status, "")
 
 
+@pytest.mark.slow
 def test_a_closed_pipe_is_no_traceback(block: Path):
     root = str(Path(bemcontact.__file__).parents[1])
     program = f"{sys.executable} -c 'from bemcontact.cli import main; main()'"

@@ -123,6 +123,7 @@ def test_an_interrupt_after_the_work_does_not_change_its_status(status):
         assert process.stderr.read() == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("before", ["ulimit -f 0; exec 2>messages.txt;", "exec 2>&-;"])
 @pytest.mark.parametrize("arguments", [("solve", "none.yaml"), ("solve", "--none"), ("schema", "--path", "--cases")])
 def test_a_message_that_cannot_be_written_does_not_change_the_status(tmp_path: Path, before: str, arguments):

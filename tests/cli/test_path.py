@@ -34,6 +34,7 @@ def test_table_states_where_points_enter_and_how_the_peak_goes():
     assert answer.stderr == ""
 
 
+@pytest.mark.slow
 def test_path_that_does_not_arrive_is_stated_and_has_a_status():
     """Suction lifts the cylinder as soon as the pressure is below zero."""
     answer = run(CYLINDER, "--vary", PRESSURE, "--to", -20)
@@ -42,6 +43,7 @@ def test_path_that_does_not_arrive_is_stated_and_has_a_status():
     assert_states(told, "Equations … up to 0; … off its support")
 
 
+@pytest.mark.slow
 def test_a_mesh_that_is_too_coarse_has_a_status():
     """Ten thousand times finer than asked for, no mesh of 24 elements is: the path is proved, the mesh is not met."""
     asked = ["--set", "accuracy=1e-6", "--set", "mesh.adapt=false"]

@@ -27,6 +27,7 @@ def test_solve_prints_a_short_table(block: Path):
     assert max(map(len, answer.stdout.splitlines())) <= 100
 
 
+@pytest.mark.slow
 def test_solve_starts_with_the_direct_solver_alone(block: Path):
     """Other formulations, comparisons, references and figures are read where they are asked for."""
     scipy = tuple(f"scipy.{name}" for name in ("optimize", "sparse", "special", "interpolate"))

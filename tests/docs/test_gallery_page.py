@@ -97,6 +97,7 @@ def test_accuracy_is_met_and_so_are_the_references(gallery: ModuleType, model: s
         assert [item for item in scores if item.judged and not item.holds] == []
 
 
+@pytest.mark.slow
 def test_picture_is_the_same_each_time(gallery: ModuleType):
     once, again = (next(gallery.pictures()) for _ in range(2))
     assert once == again

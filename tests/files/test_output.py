@@ -220,6 +220,7 @@ print(len(seen))
 """
 
 
+@pytest.mark.slow
 def test_a_killed_run_leaves_the_old_folder_or_the_new_one(tmp_path: Path):
     """Killed 100 times at random moments of endless writing, each time all four files are of one and the same run."""
     command = [sys.executable, "-c", KILLED, str(tmp_path / "report"), "100"]

@@ -193,6 +193,7 @@ def test_an_interrupt_is_raised_when_a_solve_has_ended():
         signal.signal(signal.SIGINT, before)
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 10**6), decades=st.integers(6, 11))
 @example(0, 9)

@@ -146,6 +146,7 @@ def judge_end(end: SearchEnd, p: Array, states: list[Array]) -> bool:
     return right
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("statement", STATEMENTS, ids=str)
 def test_ends_of_other_matrices_are_classified_by_their_objective(statement):
     """Objective zero at contact states alone; ends with more are none, are called so, and exist: M has to be P."""
@@ -158,6 +159,7 @@ def test_ends_of_other_matrices_are_classified_by_their_objective(statement):
     assert spurious > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [2, 3, 4])
 def test_ends_of_other_matrices_are_first_order_points(n):
     """Whatever QP1 and QP2 end at is in the list of 4ⁿ faces."""

@@ -29,6 +29,7 @@ def loose(slopes: list[float], gaps: list[float], length: float = 1.0, stress: f
 many = st.lists(st.floats(-1, 1), min_size=1, max_size=4)
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(
     slopes=many,
@@ -115,6 +116,7 @@ def test_balance_of_loads_on_tools_has_no_unit(lengths: tuple[float, float]):
     assert other.pinned.length / lengths[1] == pytest.approx(one.pinned.length / lengths[0], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_units_do_not_decide_a_sliding_tool_whose_corners_stand_over_nodes():
     """Under a gap, the normals at its corners are those of its flat, so that no pressed point sees the tool slide."""
     found = []

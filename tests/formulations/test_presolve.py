@@ -14,6 +14,7 @@ def data_of(problem: cp.Problem) -> dict:
     return problem.get_problem_data(cp.CLARABEL, solver_opts={})[0]
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), units=st.sampled_from((1e-6, 1.0, 1e6)), linear=st.booleans())
 def test_optimum_and_all_multipliers_keep_the_optimality_conditions(seed, units, linear):

@@ -13,6 +13,7 @@ MANY = "roller_bearing"
 """Eleven bodies, which take half a minute: they are checked here, not solved."""
 
 
+@pytest.mark.slow
 def test_the_bearing_is_held_and_its_rollers_are_copies():
     problem = bemcontact.load(FOLDER / f"{MANY}.yaml")
     assert {body.copy_of for body in problem.bodies.values()} == {None, "roller 1"}

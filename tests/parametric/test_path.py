@@ -299,6 +299,7 @@ def test_positions_that_contact_leaves_open_are_those_of_solutions():
     assert opened > 5
 
 
+@pytest.mark.slow
 def test_positions_that_contact_leaves_open_are_noted_once_with_where_they_are():
     """A motion is named in the ranges in which solutions leave it open; values of a parameter stand in place of t."""
     several = 0

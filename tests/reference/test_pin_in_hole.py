@@ -139,6 +139,7 @@ def solved(spec: str) -> tuple[bemcontact.Result, dict[str, Score]]:
     return result, {item.quantity: item for item in found}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("half_angle", LOADS)
 @pytest.mark.parametrize("plate", [1000.0, 1000 / 3])
 def test_solved_pins_have_the_peak_and_the_angle(half_angle: int, plate: float):
@@ -154,6 +155,7 @@ def test_solved_pins_have_the_peak_and_the_angle(half_angle: int, plate: float):
     assert found["resultant"].difference == pytest.approx(0, abs=2e-3)
 
 
+@pytest.mark.slow
 def test_a_plate_of_finite_size_is_off_in_the_second_order():
     """Half the size has four times the difference, up to error bars of the mesh and terms of higher order."""
     small, large = (solved(pin_in_hole(LOADS[70][0], size))[1]["peak"].difference for size in (6.0, 12.0))

@@ -89,6 +89,7 @@ def test_punch_on_a_block():
         assert large["punch", quantity].difference < small["punch", quantity].difference
 
 
+@pytest.mark.slow
 def test_panel_with_a_crack_tends_to_the_infinite_one():
     """Of second order in crack over panel: twice the size has a quarter of the difference, to 5 %."""
     differences = []

@@ -162,6 +162,7 @@ def rotations_of(rotations: tuple[float, ...] | None) -> list[str]:
     return [words for name, words in facts_of_forces(False, [1.0], rotations) if name == "Rotation"]
 
 
+@pytest.mark.slow
 def test_the_force_of_several_zones_is_as_uncertain_as_all_of_them():
     """On a body that conditions hold aside; and each zone has its largest pressure."""
     record = bemcontact.solve(bemcontact.load("models/gallery/beam_on_two_supports.yaml")).to_dict()

@@ -84,6 +84,7 @@ def test_peaks_whose_error_is_too_large_are_marked(link: ParameterPath):
     assert "Estimated too coarse between the ends" in read(page).text
 
 
+@pytest.mark.slow
 def test_an_infinite_peak_is_stated():
     path = bemcontact.follow(punch(), "conditions.top.pressure", 1.0)
     page = render(path, {}, None, None)

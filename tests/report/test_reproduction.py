@@ -105,6 +105,7 @@ def test_the_table_fits_a_terminal():
         assert words in told
 
 
+@pytest.mark.slow
 def test_the_schema_is_what_the_record_holds():
     validator = schemas.of_result("reproduction")
     for written in (record(), json.loads(with_coarse_mesh_judged().to_json())):

@@ -117,6 +117,7 @@ def test_load_cases_have_the_largest_of_all():
         assert f"{zone}{own[most]:.5g}{most}(" in together(text[text.index("Largest of all load cases") :])
 
 
+@pytest.mark.slow
 def test_formulations_are_compared_under_each_load_case():
     """The page says of each whether it solves the problem; the head says what the answer is first."""
     compared = compare_cases(ComparisonOptions.of(["qp3"]), made(FREE, **FREE_CASES))

@@ -118,6 +118,7 @@ def test_results_lead_to_their_parts_and_have_units_in_their_line():
     assert result.units.stress == "MPa"
 
 
+@pytest.mark.slow
 def test_nothing_is_imported_until_something_is_shown():
     import subprocess  # a fresh process: this one has drawn
 

@@ -15,6 +15,7 @@ TOOLS = bemcontact.load(MODELS / "gallery" / "body_between_two_tools.yaml").with
 PUNCH = bemcontact.load(MODELS / "gallery" / "flat_punch.yaml")
 
 
+@pytest.mark.slow
 def test_values_and_errors_are_those_of_the_error_bars():
     """Errors are absolute; of a start or an end relative to the length of its interval before."""
     result = bemcontact.solve(ZONES)
@@ -54,6 +55,7 @@ def test_motions_of_tools_are_outputs():
     assert any(name.startswith("motion.") and item.error is not None for name, item in found.items())
 
 
+@pytest.mark.slow
 def test_each_output_of_a_result_can_be_chosen():
     for problem in (ZONES, TOOLS, PUNCH):
         for name in readings(bemcontact.solve(problem)):

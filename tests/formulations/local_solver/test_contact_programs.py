@@ -262,6 +262,7 @@ def test_cylinder_from_random_starts(formulation):
         assert_right(end.solution.displacement, truth.displacement)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("n", "condition"), [(20, 5e4), (80, 5e5)])
 @pytest.mark.parametrize("formulation", ["qp1", "qp2"])
 def test_slender_beam_from_random_starts(formulation, n, condition):

@@ -111,6 +111,7 @@ def first_order_values(H, c, A, cl, cu, bl, bu):
     return np.array(computed)
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(st.integers(0, 10**9))
 @example(5002655)

@@ -66,6 +66,7 @@ def test_the_designed_surface_is_drawn_on_the_plan(design: GapDesign):
     assert hatching[:, 1].max() > points[:, 1].max() + 1  # the block is below
 
 
+@pytest.mark.slow
 def test_each_load_state_has_its_color():
     contact = CondensedContact.from_compliance(np.eye(3), [-3.0, -1.0, -1.0])
     two = design_gap([contact, replace(contact, initial_gap=contact.initial_gap / 2)], Relief(lower=0, upper=1.5))

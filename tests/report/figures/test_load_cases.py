@@ -75,6 +75,7 @@ def test_all_panels_have_equal_limits_and_sizes(name: str, draw):
         assert ((corners >= (left, low)) & (corners <= (right, high))).all()
 
 
+@pytest.mark.slow
 def test_fans_are_as_long_as_their_pressures():
     """Block between a press and a table: the largest pressures are 150, 100, 200 and 150 MPa by statics."""
     figure = page_of(figure_of_contacts, "body_between_two_tools")

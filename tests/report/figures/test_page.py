@@ -93,6 +93,7 @@ def test_a_figure_written_twice_is_the_same(tmp_path: Path, ending: str):
     assert (tmp_path / f"a.{ending}").read_bytes() == (tmp_path / f"b.{ending}").read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("ending", "magic"), [(".png", b"\x89PNG"), (".SVG", b"<?xml"), (".pdf", b"%PDF")])
 def test_saved_in_the_format_of_the_ending(problem: Problem, tmp_path: Path, ending: str, magic: bytes):
     path = tmp_path / f"figure{ending}"

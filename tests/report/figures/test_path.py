@@ -102,6 +102,7 @@ def test_accuracies_of_both_ends_are_in_the_title(page: Figure):
     assert all(f"at {value}: " in title for value in (0, 20))
 
 
+@pytest.mark.slow
 def test_an_infinite_peak_is_not_drawn():
     path = bemcontact.follow(punch(), "conditions.top.pressure", 1.0)
     peaks, forces, _ = figures.figure_of_path(path).axes

@@ -267,6 +267,7 @@ def test_tool_has_the_load_of_the_acting_case():
     assert "punch\nloaded by y = -70 N/mm,\nmoment = -1 N·mm/mm" in texts
 
 
+@pytest.mark.slow
 def test_the_picture_shows_the_conditions_of_the_case_that_acts():
     axes = picture(made(HELD, **HELD_CASES, **UNITS, case="wind"))
     texts = [text.get_text() for text in axes.texts]

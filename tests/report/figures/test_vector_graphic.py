@@ -43,6 +43,7 @@ def contrast(one: str, other: str) -> float:
     return (high + 0.05) / (low + 0.05)
 
 
+@pytest.mark.slow
 def test_a_picture_has_no_background_and_paths_are_rounded():
     text = figures.vector_graphic(figures.figures_of(on_one_mesh())["gap"]).decode()
     (patch,) = re.findall(r'<g id="patch_1">\s*<path[^>]*style="([^"]*)"', text)
