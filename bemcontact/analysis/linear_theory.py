@@ -13,6 +13,7 @@ from bemcontact.assessment.footprint import Footprint
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
 from bemcontact.bem.mesh import CORNER, BoundaryState, Mesh
+from bemcontact.bem.symmetry import symmetry_lines
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problems.material import Material
@@ -162,9 +163,17 @@ def _strained(
 
 
 def _sharp(body: Body, place: Array) -> str:
-    """Ask for a corner of the body to be rounded if one is at a place (2,) [L]; empty if none is."""
+    """Ask for a corner of the body to be rounded if one is at a place (2,) [L]; empty if none is.
+
+    Where a boundary meets a line of symmetry at a right angle, the whole body has no corner.
+    """
     mesh = body.mesh
-    corners = mesh.nodes[mesh.elements[abs(mesh.turns) > CORNER, 0]]
+    sharp = abs(mesh.turns) > CORNER
+    for part in mesh.parts:
+        right = abs(part.mesh.turns) > np.cos(CORNER)
+        for line in symmetry_lines(body.problem, part.mesh):
+            sharp[part.elements] &= ~(right & (line.elements | line.elements[part.mesh.before]))
+    corners = mesh.nodes[mesh.elements[sharp, 0]]
     if not len(corners) or np.hypot(*(corners - place).T).min() > AT_CORNER * mesh.size:
         return ""
     return (

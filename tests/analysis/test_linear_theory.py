@@ -140,3 +140,24 @@ def test_a_body_that_a_condition_holds_is_not_told_to_be_held():
     assert "Units may be mixed" in words
     assert "210" in words
     assert "hold it" not in words
+
+
+@pytest.mark.parametrize(("rim", "told"), [({"kind": "arc", "center": (0, 5), "radius": 5}, False), ({}, True)])
+def test_a_line_of_symmetry_makes_no_corner(rim: dict, told: bool):
+    """Half of a squeezed round seal has a corner on its line of symmetry, and the seal has none; a wedge has one."""
+    seal = Problem(
+        name="seal",
+        material={"young_modulus": 5, "poisson_ratio": 0.48},
+        boundary={"outer": [
+            {"name": "rim", **rim, "start": (0, 0), "end": (5, 5), "elements": 12},
+            {"name": "top", "end": (0, 5), "elements": 6},
+            {"name": "axis", "end": (0, 0), "elements": 6},
+        ]},
+        conditions={"axis": {"displacement": {"x": 0}}, "top": {"displacement": {"x": 0, "y": -1.5}}},
+        contact_zones={"floor": {"edges": "rim", "surface": {"kind": "plane", "point": (0, 0), "normal": (0, 1)}}},
+        accuracy=None,
+    )  # pyright: ignore[reportArgumentType] # fmt: skip
+    found = bemcontact.solve(seal).penetration
+    assert found is not None
+    assert found.kind is Misfit.NOT_SMALL
+    assert ("sharp corner" in found.words) is told

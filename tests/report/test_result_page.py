@@ -153,10 +153,20 @@ def test_the_head_says_that_notes_go_beyond_the_error_bars():
 def test_the_head_of_load_cases_has_the_largest_pressure_of_all():
     results = cases().results
     most = max(results, key=lambda name: results[name].solution.pressure.max())
-    head = read(render(cases(), {}, None)).text.partition("Equations:")[0]
+    head = read(render(cases(), {}, None)).text.partition("What was asked")[0]
     peak = peak_of(results[most].to_dict(), units_of(results[most].contact))
     assert f"Largest pressure{peak} under {most}" in head
     assert f"Load cases{len(results)}" in head
+
+
+def test_numbers_that_are_not_to_be_relied_on_come_after_the_verdict():
+    assert not cases().certified
+    for results, first in ((rolled(), "Peak pressure"), (cases(), "Equations:")):
+        head = read(render(results, {}, None)).text.partition("What was asked")[0]
+        places = {
+            words: head.index(words) for words in ("Equations:", "Peak pressure", "Largest pressure") if words in head
+        }
+        assert min(places, key=lambda words: places[words]) == first
 
 
 def test_a_caption_counts_the_load_cases_that_are_drawn(monkeypatch: pytest.MonkeyPatch):
