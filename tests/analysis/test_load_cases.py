@@ -175,6 +175,7 @@ TOOLS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TOOLS)
 @pytest.mark.parametrize("formulation", ["qp1", "qp2", "qp3", "complementarity"])
 def test_loaded_tools_suit_every_formulation(name: str, formulation: str):

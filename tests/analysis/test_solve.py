@@ -161,6 +161,7 @@ def profile(result: bemcontact.Result) -> tuple[np.ndarray, np.ndarray]:
     return result.solution.pressure[order], result.contact.points[order]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("length", [1e-3, 1, 1e3])
 @pytest.mark.parametrize("stress", [1e-6, 1, 1e6])

@@ -43,6 +43,7 @@ def test_solution_is_certified(k):
     assert "other state exists, because" in certificate.words
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("k", [0, 1, 2, 3])
 @pytest.mark.parametrize("seed", range(5))
 def test_error_is_never_above_the_bound(seed, k):

@@ -16,6 +16,7 @@ def worst_of(result, exact):
     return float(np.abs(result.solution.pressure / exact - 1).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kinds", ARRANGEMENTS)
 @pytest.mark.parametrize(
     "seen",

@@ -69,6 +69,7 @@ def test_free_motions_are_counted(conditions, zones, seen, unseen, idle):
     assert (body.idle_motion is not None) == idle
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", ["complementarity", "qp1", "qp2", "qp3"])
 @pytest.mark.parametrize(("gap", "turn"), [(0.1, 0.0), (0.0, 0.0), (-0.2, 0.0), (0.1, 0.7)])
 def test_a_block_is_squeezed_beside_a_wall(gap, turn, formulation):

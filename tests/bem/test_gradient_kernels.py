@@ -41,6 +41,7 @@ def exact(tau: np.ndarray) -> np.ndarray:
         return np.array([[complex(mp.fdot(shape, row)) for shape in shapes] for row in moments])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("distance", [1e-9, 1e-4, 1e-2, 0.1, 0.3, 0.6])
 @pytest.mark.parametrize("name", ELEMENTS)
 def test_integrals(name: str, distance: float):

@@ -96,6 +96,7 @@ def test_p_matrices_have_one_first_order_point(kind, n):
             assert among(x, [np.append(gap, truth)])
 
 
+@pytest.mark.slow
 @named
 @pytest.mark.parametrize("statement", STATEMENTS, ids=str)
 @pytest.mark.parametrize("n", [3, 8])

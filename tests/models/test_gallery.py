@@ -89,6 +89,7 @@ def test_each_case_has_a_reference_of_its_own(name: str, case: str | None):
     assert case in {reference.case for reference in problem(name).reference.values()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "case"), CASES)
 def test_comparison_is_certified(name: str, case: str | None):
     comparison = comparing.compare(problem(name, case=case))

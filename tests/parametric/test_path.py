@@ -68,6 +68,7 @@ def test_states_are_those_of_exhaustive_search(seed: int):
         np.testing.assert_allclose(path.at(t).pressure, exhaustive.state(path.contact(t))[0], atol=1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 def test_random_states_between_agree_with_independent_solves(seed: int):
     """1e-9 is asked for; the residual is round-off, since each state is solved for anew."""

@@ -77,6 +77,7 @@ def _softness(body: Material | None, n: int, way: int) -> float:
     return (kappa / (n + way) + 1 / (n - way)) / (4 * G)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pair", PAIRS)
 @pytest.mark.parametrize("load", [0.03, 0.3, 2.0])
 def test_where_both_touch_they_move_by_clearance_and_a_rigid_motion(pair: str, load: float):

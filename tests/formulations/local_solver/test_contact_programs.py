@@ -208,6 +208,7 @@ def test_written_by_hand_in_scaled_numbers(statement, body, mesh, modulus, units
         assert_right(gap - condensed.initial_gap, truth.displacement)
 
 
+@pytest.mark.slow
 @everywhere
 @pytest.mark.parametrize("formulation", ["qp1", "qp2"])
 def test_formulations_in_raw_units(formulation, body, mesh, modulus, units):
