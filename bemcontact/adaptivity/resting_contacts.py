@@ -105,6 +105,7 @@ def _curved(problem: Problem) -> dict[str, LineSurface | BodySurface]:
 
 
 def _is_straight(surface: LineSurface | BodySurface) -> bool:
+    """Whether a rigid surface has straight faces only."""
     edges = surface.edges if isinstance(surface, BodySurface) else ()
     return isinstance(surface, Plane) or (bool(edges) and all(isinstance(edge.curve, Segment) for edge in edges))
 
@@ -168,18 +169,18 @@ def _ways_of_rigid(case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:
         at, force = body.points.node[beside], (contact.weights * solution.pressure)[beside]
         if not force.any():
             continue
-        places, (tool, turn, about) = body.mesh.nodes[at], gaps.motion_of_tool(name)
-        spin, steps = Way(turn=turn, about=(float(about[0]), float(about[1]))), tool - displacement[at]
-        motion = steps + spin.motion_at(places - steps)
+        places, tool = body.mesh.nodes[at], gaps.way_of_tool(name)
+        spin, steps = tool._replace(x=0.0, y=0.0), tool.step - displacement[at]
+        motion = steps + spin.motion_of(places - steps)
         mean, step = (force @ item / force.sum() for item in (motion, steps))
         spread = np.sqrt(force @ (motion - mean) ** 2 / force.sum())
         still = abs(motion).min(axis=0) <= ROUND_OFF * abs(motion).max()  # as at a line of symmetry
         x, y = (step - np.where(still | (abs(mean) <= AS_A_WHOLE * spread), mean, 0.0)).tolist()
         way, found, moments = spin._replace(x=x, y=y), list[Faces](), list[float]()
         for item in (surface, surface.after(way)):
-            faces, moved = item.faces(places, inward[at], reach[at]), steps + spin.motion_at(places - item.way.step)
+            faces, moved = item.faces(places, inward[at], reach[at]), steps + spin.motion_of(places - item.way.step)
             found.append(faces._replace(gap=faces.gap - np.einsum("ksx,kx->ks", faces.normals, moved)))
-            moments.append(float(force @ cross(places - item.way.step - about, faces.normals[:, 1])))
+            moments.append(float(force @ cross(places - item.way.step - tool.about, faces.normals[:, 1])))
         now, there = found
         off = float(abs(there.gap - now.gap).max()) / scale
         turned = 0.0 if _is_straight(surface) else float(np.hypot(*(there.normals - now.normals).T).max())

@@ -171,7 +171,7 @@ def _gain_of_levers_of_tool(
 ) -> float:
     """Moment that pressure on the body gains about the point of a tool, by motion that contact has not followed."""
     own = np.isin(contact.zone, [contact.zone_names.index(zone) for zone in zones])
-    beside = _at_points(gaps, points)[own] - gaps.motion_of_tool(zones[0])[0]
+    beside = _at_points(gaps, points)[own] - gaps.way_of_tool(zones[0]).step
     forces = (contact.weights * solution.pressure)[own, None] * contact.normals[own]
     return float(np.sum(cross(beside + steps_of_surfaces(gaps.problem)[contact.zone[own]], forces)))
 

@@ -33,6 +33,7 @@ from bemcontact.problems.material import Material
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import Circle, DeflectedContour
 from bemcontact.problems.visibility import zone_edges
+from bemcontact.problems.way import Way
 
 TURNED = {
     "plane": "its normal points to the body",
@@ -204,12 +205,12 @@ class Body:
         if held is None:
             return np.zeros(0)
         position = self.tools.position @ self.factors
+        places = mesh.nodes[held.node] - steps_of_surfaces(self.problem)[held.zone]
         gap = held.gap + np.sum(held.normals * self.acting.values.displacement[held.node], axis=1)
         for number, tool in enumerate(self.problem.tools.values()):
             own = np.isin(held.zone, [[*self.problem.zones].index(zone) for zone in tool.zones])
-            arm = mesh.nodes[held.node] - steps_of_surfaces(self.problem)[held.zone] - self.tools.point[number]
-            x, y, turn = position[3 * number : 3 * number + 3]
-            moved = np.array([x, y]) + turn * np.column_stack([-arm[:, 1], arm[:, 0]])
+            x, y, turn = position[3 * number : 3 * number + 3].tolist()
+            moved = Way(x, y, turn, tool.point or (0.0, 0.0)).motion_of(places)
             gap -= np.where(own, np.sum(held.normals * moved, axis=1), 0.0)
             gap[own & any(tool.free)] = np.inf
         return gap

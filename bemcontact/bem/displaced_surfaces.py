@@ -13,7 +13,7 @@ from bemcontact.problems.body_surface import AnyShape, BodySurface
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import DeflectedContour
 from bemcontact.problems.surface_lines import Closest
-from bemcontact.problems.way import Way
+from bemcontact.problems.way import AS_DRAWN, Way
 
 CHUNK = 8192
 """Number of places whose distance from a surface is computed at a time."""
@@ -53,8 +53,7 @@ class DisplacedSurfaces:
         if isinstance(surface, BodySurface) and surface.elastic:
             motion = self._motion_of_body(surface, moved)
             return _closest(surface, moved - self._motion_of_body(surface, moved - motion))
-        step, turn, about = self.motion_of_tool(zone)
-        way = Way(float(step[0]), float(step[1]), turn, (float(about[0]), float(about[1])))
+        way = self.way_of_tool(zone)
         gap, normals = _closest(surface, way.back(moved))
         return Closest(gap, way.turned(normals))
 
@@ -80,22 +79,18 @@ class DisplacedSurfaces:
 
         Of the latter at the nearest places, or at the pairs of points with normals `inward` (..., 2) into their body.
         """
-        return self._motion_of(zone, self.surfaces[zone], points, inward)
-
-    def _motion_of(self, zone: str, surface: AnyShape, points: Array, inward: Array | None = None) -> Array:
-        """Displacement (..., 2) [L] of the surface of a zone, or of one that goes on from it, as of `tool_motion`."""
+        surface = self.surfaces[zone]
         if isinstance(surface, BodySurface) and surface.elastic:
             return self._motion_of_body(surface, points, inward)
-        step, turn, about = self.motion_of_tool(zone)
-        return step + turn * _across(points - surface.way.step - about)
+        return self.way_of_tool(zone).motion_of(points - surface.way.step)
 
-    def motion_of_tool(self, zone: str) -> tuple[Array, float, Array]:
-        """Displacement (2,) [L] of the point of the tool of a zone, rotation [rad], and the point (2,) as drawn [L]."""
+    def way_of_tool(self, zone: str) -> Way:
+        """Motion of the tool of a zone; none of a surface that is no tool."""
         for name, tool in self.problem.tools.items():
             if zone in tool.zones:
                 x, y, turn = self.tools[name].tolist()
-                return np.array([x, y]), turn, np.array(tool.point or (0.0, 0.0))
-        return np.zeros(2), 0.0, np.zeros(2)
+                return Way(x, y, turn, tool.point or (0.0, 0.0))
+        return AS_DRAWN
 
     def turn_of_normals(self, zone: str, points: Array, normals: Array) -> Array:
         """Change (k, 2) of normals (k, 2) at points (k, 2) [L] of a surface as its tool turns, or its body deforms.
@@ -125,11 +120,6 @@ class DisplacedSurfaces:
         )
         slope = np.sum(change * normals, axis=1) / np.sum(along**2, axis=1)
         return -slope[:, None] * along
-
-
-def _across(vectors: Array) -> Array:
-    """Vectors (..., 2) turned counterclockwise by a right angle."""
-    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
 
 
 def _closest(surface: AnyShape, points: Array) -> Closest:

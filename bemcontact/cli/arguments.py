@@ -56,13 +56,13 @@ RefineOption = Annotated[
     int, typer.Option(parser=reader(int, 1), metavar="K", help="Split each element into K equal parts.")
 ]
 read_number = reader(float)
-WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?+\s*(?![eE]$)[^\W\d_].*")
-"""A number with a unit behind it."""
 
 
 def read_quantity(text: Any) -> float | str:
     """Read a number; one with a unit stays a text."""
-    return text.strip() if isinstance(text, str) and WITH_UNIT.fullmatch(text.strip()) else read_number(text)
+    from bemcontact.problems.quantities import QUANTITY
+
+    return text if isinstance(text, str) and QUANTITY.fullmatch(text) else read_number(text)
 
 
 def read_accuracy(text: Any) -> float:

@@ -11,7 +11,9 @@ from typing import Any, NamedTuple
 from bemcontact.errors import Issue, KeyPath, ProblemError
 from bemcontact.problems.units import METERS, NEWTONS
 
-QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?+)\s*((?:1?\s*/\s*)?[A-Za-zµμ°%][^#]*?)\s*")
+QUANTITY = re.compile(
+    r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?+)\s*((?![eE]\s*$)(?:1?\s*/\s*)?[A-Za-zµμ°%][^#]*?)\s*"
+)
 """A number with a unit behind it. The exponent is one of the number, never a unit e."""
 POWER = re.compile(r"(?<=[A-Za-z])([2-4])(?![A-Za-z0-9])")
 """The power of a unit in N/mm2 or kg/m3."""

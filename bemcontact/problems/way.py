@@ -45,10 +45,14 @@ class Way(NamedTuple):
         cosine, sine = np.cos(self.turn), sense * np.sin(self.turn)
         return vectors @ np.array([[cosine, sine], [-sine, cosine]])
 
+    def motion_of(self, points: Array) -> Array:
+        """Displacement (..., 2) [L] of places (..., 2) as drawn, linear in the turn."""
+        x, y = np.moveaxis(points - self.about, -1, 0)
+        return self.step + self.turn * np.stack([-y, x], axis=-1)
+
     def motion_at(self, points: Array) -> Array:
         """Displacement (..., 2) [L] by which points (..., 2) are come to, linear in the turn."""
-        x, y = np.moveaxis(points - self.step - self.about, -1, 0)
-        return self.step + self.turn * np.stack([-y, x], axis=-1)
+        return self.motion_of(points - self.step)
 
 
 AS_DRAWN = Way()

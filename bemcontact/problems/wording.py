@@ -99,12 +99,12 @@ def number_hint(value: object) -> str:
         return number_hint(parts[1])
     if _SPACED.fullmatch(value):
         return f"; write {value.replace(' ', '')} without blanks between thousands"
-    if _FORMULA.fullmatch(value) and not _is_number(value):
+    if _FORMULA.fullmatch(value) and not is_number(value):
         return "; write the number itself, formulas are not computed"
     if _THOUSANDS.fullmatch(value):
         otherwise = f", or {value.replace(',', '.')} if the comma is the decimal sign" * (value.count(",") == 1)
         return f"; write {value.replace(',', '')} without a comma between thousands{otherwise}"
-    if not _is_number(value.replace(",", ".", 1)):
+    if not is_number(value.replace(",", ".", 1)):
         return "; write the number alone, in the units of the file" if has_unit(value) else ""
     if "," in value:
         return "; the decimal sign is a point"
@@ -119,7 +119,8 @@ def has_unit(text: str) -> bool:
     return _NUMBER_AND_UNIT.fullmatch(text) is not None
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
+    """Whether a text is a number as Python reads it."""
     try:
         float(text)
     except ValueError:

@@ -11,6 +11,7 @@ from bemcontact.arrays import Array
 from bemcontact.errors import ProblemError
 from bemcontact.files.text import text_of
 from bemcontact.problems.curves import cross
+from bemcontact.problems.wording import is_number
 
 SHARP = 60.0
 """Turn at a point in degrees from which it is a corner."""
@@ -56,7 +57,7 @@ def _loops(path: Path) -> list[Array]:
         try:
             x, y = map(float, words)
         except ValueError:
-            numbers = [word for word in words if _is_number(word)]
+            numbers = [word for word in words if is_number(word)]
             if number == 1 and not numbers:
                 continue
             message = f"expected two numbers, x and y, with a comma or a blank between; found {line.strip()[:40]!r}"
@@ -74,14 +75,6 @@ def _loops(path: Path) -> list[Array]:
     if not closed:
         raise ProblemError(f"{path}: there are no points")
     return closed
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
 
 
 def _edges(loop: Array) -> list[Edge]:
