@@ -12,9 +12,10 @@ from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import footprint
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
+from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.condense import Condensation, boundary_change, boundary_state, condensed
 from bemcontact.bem.contact_points import ContactPoints
-from bemcontact.bem.mesh import BoundaryState, Mesh
+from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import ContactSolution, Status

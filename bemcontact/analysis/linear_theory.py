@@ -12,7 +12,8 @@ from bemcontact.arrays import Array, IntArray
 from bemcontact.assessment.footprint import Footprint
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
-from bemcontact.bem.mesh import CORNER, BoundaryState, Mesh
+from bemcontact.bem.boundary_values import BoundaryState
+from bemcontact.bem.mesh import CORNER, Mesh
 from bemcontact.bem.symmetry import symmetry_lines
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution

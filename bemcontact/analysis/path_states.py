@@ -10,8 +10,8 @@ from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.adaptivity.zone_runs import ZoneRun, zone_runs
 from bemcontact.analysis.variation import Variation
 from bemcontact.assessment.accuracy import ErrorBar
+from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.condense import Condensation, boundary_state
-from bemcontact.bem.mesh import BoundaryState
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
 

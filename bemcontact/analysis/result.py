@@ -18,7 +18,7 @@ from bemcontact.assessment.footprint import (
 )
 from bemcontact.assessment.penetration import Penetration
 from bemcontact.assessment.residual import Residuals
-from bemcontact.bem.mesh import BoundaryState
+from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.blas_threads import one_thread
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts

@@ -15,8 +15,9 @@ from bemcontact.arrays import Array, IntArray
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
+from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.loading import particular_solutions
-from bemcontact.bem.mesh import BoundaryState, Mesh
+from bemcontact.bem.mesh import Mesh
 from bemcontact.errors import BemContactError
 from bemcontact.problems.conditions import Loads
 

@@ -15,8 +15,8 @@ from bemcontact.assessment.accuracy import NO_MESH, Accuracy
 from bemcontact.assessment.certificate import CertificateKind, certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
+from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.condense import Condensation, boundary_state
-from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import ensure_callable, shown

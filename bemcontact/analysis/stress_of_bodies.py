@@ -11,7 +11,8 @@ from bemcontact.analysis.body_stress import BodyStress, ensure_in_body
 from bemcontact.analysis.largest_stress import largest_stresses
 from bemcontact.analysis.triangulated_body import FilledBody, filled_body, triangulated_body
 from bemcontact.arrays import Array, BoolArray, IntArray, real_array
-from bemcontact.bem.mesh import BoundaryState, Mesh, build
+from bemcontact.bem.boundary_values import BoundaryState
+from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.stress_field import Located, StressField
 from bemcontact.contact.stress import (
     INSIDE,

@@ -274,11 +274,14 @@ class Body:
         return (*_left_out(self.problem), *_mixed_states(self.problem), *self._wedges(), *at_zero, *stated)
 
     def _wedges(self) -> Iterator[str]:
-        """Note contact points that conditions hold nearly along the rigid normal, and that slide into a wedge."""
+        """Note contact points that conditions hold nearly along the rigid normal, and that slide into a wedge.
+
+        Opposite to another elastic body pressure is bounded, for that one gives way.
+        """
         points = self.points
         free = np.where(self.loadings[0].values.displacement_given[points.node], 0.0, points.normals)
         part = np.hypot(*free.T)
-        for i in np.flatnonzero(part < WEDGE).tolist():
+        for i in np.flatnonzero((part < WEDGE) & (points.opposite.node < 0)).tolist():
             x, y = self.mesh.nodes[points.node[i]].tolist()
             zone = [*self.problem.zones][points.zone[i]]
             yield (

@@ -14,7 +14,8 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from bemcontact.arrays import Array, IntArray
-from bemcontact.bem.mesh import BoundaryValues, Mesh, MeshPart
+from bemcontact.bem.boundary_values import BoundaryValues
+from bemcontact.bem.mesh import Mesh, MeshPart
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.problems.problem import Problem
 

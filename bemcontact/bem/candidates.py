@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ALIKE, SMOOTH, ContactPoints, HeldNodes
-from bemcontact.bem.mesh import BoundaryValues, Mesh, runs
+from bemcontact.bem.mesh import Mesh, runs
 from bemcontact.bem.outline import Outline
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problems.body_surface import AnySurface, BodySurface

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.bem.boundary_values import BoundaryValues, boundary_values
 from bemcontact.bem.loading import Loading, particular_solution
-from bemcontact.bem.mesh import BoundaryValues, Mesh, boundary_values
+from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import free_rigid_motions
 from bemcontact.bem.solution import solve_system
 from bemcontact.bem.system import System

@@ -7,7 +7,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.bem import reference_element
-from bemcontact.bem.mesh import BoundaryState
+from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.outline import Outline
 from bemcontact.problems.body_surface import AnyShape, BodySurface
 from bemcontact.problems.problem import Problem

@@ -13,8 +13,9 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.bem import reference_element
+from bemcontact.bem.boundary_values import BoundaryValues, applied_traction, boundary_values
 from bemcontact.bem.free_motions import FreeMotions
-from bemcontact.bem.mesh import BoundaryValues, Mesh, MeshPart, along_curve, applied_traction, boundary_values
+from bemcontact.bem.mesh import Mesh, MeshPart, along_curve
 from bemcontact.errors import ProblemError
 from bemcontact.problems.bodies import Part
 from bemcontact.problems.conditions import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array
+from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
-from bemcontact.bem.mesh import BoundaryValues, Mesh
+from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.unit_pressures import UnitPressures
 
 HELD = 1e-9

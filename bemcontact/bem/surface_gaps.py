@@ -15,9 +15,9 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
+from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.contact_points import ALIKE, SMOOTH
 from bemcontact.bem.displaced_surfaces import DisplacedSurfaces
-from bemcontact.bem.mesh import BoundaryState
 from bemcontact.bem.outline import NODES
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution

@@ -18,10 +18,11 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import kernels, reference_element
+from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.flat import FlatColumns, FlatElements, FlatPoints, FlatRules, flat_rules
 from bemcontact.bem.influence import Collocation, Influence, InfluenceRows
 from bemcontact.bem.loading import Loading
-from bemcontact.bem.mesh import BoundaryValues, Mesh
+from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.problems.material import Material

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import bemcontact
 from bemcontact.analysis.linear_theory import LARGE, LARGE_PART, LARGE_ROTATION, Judgment, large_displacements
 from bemcontact.assessment.penetration import Misfit
-from bemcontact.bem.mesh import BoundaryState
+from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.problems import Problem
 
 

@@ -4,8 +4,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.loading import Loading, particular_solution
-from bemcontact.bem.mesh import BoundaryValues, Mesh, connected
+from bemcontact.bem.mesh import Mesh, connected
 from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
 from bemcontact.bem.solution import solve_system
 from bemcontact.bem.system import System

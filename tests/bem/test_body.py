@@ -225,3 +225,24 @@ def test_a_tool_that_is_pressed_onto_a_held_place_penetrates_it():
     assert result.penetration is not None
     assert result.penetration.at == pytest.approx((0.0, 0.0))
     assert not result.holds
+
+
+def test_a_point_that_is_held_nearly_along_the_normal_slides_into_a_wedge():
+    """Held along x beside a surface whose normal is 0.57 degrees off x; on one 5.7 degrees off it is no wedge."""
+    for slope, told in ((0.01, True), (0.1, False)):
+        wall = {"left": {"edges": "left", "surface": {"kind": "plane", "point": [0, 0], "normal": [1, slope]}}}
+        floor = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+        held = bar(floor, {"top": {"displacement": {"x": 0}, "traction": {"y": -1}}}, zones=wall)
+        notes = [note for note in body_of(held).notes if "slides into a wedge" in note]
+        assert bool(notes) is told
+        assert not told or "but for 0.57 degrees" in notes[0]
+
+
+def test_a_point_that_is_held_beside_an_elastic_body_slides_into_no_wedge():
+    """Both ends of the nose of a cam are held, and the block may come up to them."""
+    nose = {"name": "nose", "kind": "arc", "start": [-0.6, 0.2], "end": [0.6, 0.2], "center": [0, 1], "elements": 8}
+    disk = elastic({"outer": [nose, {"name": "top", "end": [-0.6, 0.2], "elements": 4}]}, {"top": HELD})
+    corners = {"bottom": [-3, -1], "right": [3, -1], "top": [3, 0], "left": [-3, 0]}
+    low = elastic({"outer": [{"name": k, "start": at, "elements": 8} for k, at in corners.items()]}, {"bottom": HELD})
+    both = stated(name="both", bodies={"disk": disk, "low": low}, contacts={"c": {"between": ["disk/nose", "low/top"]}})
+    assert not [note for note in body_of(both).notes if "wedge" in note]

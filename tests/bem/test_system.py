@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bemcontact.analysis.solve import solve as solve_problem
-from bemcontact.bem.mesh import BoundaryValues, Mesh
+from bemcontact.bem.boundary_values import BoundaryValues
+from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions
 from bemcontact.bem.solution import solve_system
 from bemcontact.problems import Problem

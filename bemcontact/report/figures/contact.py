@@ -11,7 +11,8 @@ from scipy.spatial import KDTree
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.bem.mesh import BoundaryState, element_curves
+from bemcontact.bem.boundary_values import BoundaryState
+from bemcontact.bem.mesh import element_curves
 from bemcontact.options import StressMeasure
 from bemcontact.problems import Problem
 from bemcontact.report.bars import with_bar, without_digits_beyond

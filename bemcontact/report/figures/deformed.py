@@ -8,7 +8,8 @@ from matplotlib.collections import LineCollection
 
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
-from bemcontact.bem.mesh import BoundaryState, element_curves
+from bemcontact.bem.boundary_values import BoundaryState
+from bemcontact.bem.mesh import element_curves
 from bemcontact.options import StressMeasure
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.contact import OVERHANG, body_extent, draw_outlines, framed, outline_of

@@ -14,7 +14,8 @@ from scipy.spatial import KDTree
 
 from bemcontact.analysis.check import contours
 from bemcontact.arrays import Array
-from bemcontact.bem.mesh import Mesh, applied_traction, element_curves
+from bemcontact.bem.boundary_values import applied_traction
+from bemcontact.bem.mesh import Mesh, element_curves
 from bemcontact.problems import (
     AxisFields,
     BodySurface,
