@@ -50,7 +50,8 @@ ROOMS = {
 """Room -> the rooms that it may import, besides itself. A room stands below all that may import it."""
 
 EXCEPTIONS = {
-    ("report.figures", "bem.mesh"): "figures draw elements, and the values that are prescribed on them",
+    ("report.figures", "bem.mesh"): "figures draw elements",
+    ("report.figures", "bem.boundary_values"): "figures draw what is prescribed on elements, and how they move",
     ("modelling", "problems.surface_lines"): "a designed gap is written as a rigid surface of a spec",
 }
 """(Who imports, what) -> why. There is no other exception to `ROOMS`."""
