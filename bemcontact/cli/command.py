@@ -79,7 +79,7 @@ class MeaningGroup(TyperGroup):
         """Find a command; of an unknown one, name that with the nearest meaning."""
         try:
             return super().resolve_command(ctx, args)
-        except Exception as error:
+        except Exception as error:  # likewise
             meant = [name for name, words in COMMANDS.items() if args and args[0].lower() in words]
             if meant and hasattr(error, "message"):
                 vars(error)["message"] = f"No such command '{args[0]}'. Did you mean '{meant[0]}'?"
