@@ -2,6 +2,7 @@
 
 import json
 import os
+import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from importlib import import_module
@@ -17,6 +18,8 @@ JOURNAL = "members.jsonl"
 """Name of the journal in the folder of a study."""
 FIRST = "bemcontact study"
 """What the first line of a journal says."""
+SYNC = 0.5
+"""Seconds after which rows are written down to the disk. To wait for it with each row can take longer than the row."""
 _HEAD = f"{json_text({'journal': FIRST}, None)}\n".encode()
 
 
@@ -47,20 +50,26 @@ def recorded(path: Path) -> dict[str, Mapping[str, Any]]:
 
 
 class Journal:
-    """A journal that is open for further rows."""
+    """A journal that is open for further rows.
+
+    A row that was added outlives this process, however it ends. Where the machine ends, the rows of the last `SYNC`
+    seconds may be lost, and a run that goes on solves them again.
+    """
 
     def __init__(self, file: IO[bytes]) -> None:
-        self._file = file
+        self._file, self._synced = file, time.monotonic()
 
     def add(self, key: str, row: MemberRow) -> None:
-        """Write the row of a member, down to the disk."""
-        self._write({"key": key, "row": row.to_dict()})
-
-    def _write(self, entry: dict[str, Any]) -> None:
-        """Write one line."""
-        self._file.write(f"{json_text(entry, None)}\n".encode())
+        """Write the row of a member."""
+        self._file.write(f"{json_text({'key': key, 'row': row.to_dict()}, None)}\n".encode())
         self._file.flush()
+        if time.monotonic() - self._synced >= SYNC:
+            self.sync()
+
+    def sync(self) -> None:
+        """Wait until all rows are on the disk."""
         os.fsync(self._file.fileno())
+        self._synced = time.monotonic()
 
 
 @contextmanager
@@ -76,7 +85,11 @@ def opened(folder: Path) -> Iterator[Journal]:
             file.flush()
         elif not _ends_with_line(path):
             file.write(b"\n")
-        yield journal
+        try:
+            yield journal
+        finally:
+            file.flush()
+            journal.sync()
 
 
 def _ends_with_line(path: Path) -> bool:

@@ -27,6 +27,13 @@ def test_rows_are_read_back_as_they_were(tmp_path: Path):
     assert read(tmp_path / "study" / JOURNAL) == ROWS
 
 
+def test_a_row_outlives_its_process_as_soon_as_it_is_added(tmp_path: Path):
+    with opened(tmp_path / "study") as journal:
+        for count, row in enumerate(ROWS, 1):
+            journal.add(f"key {row.number}", row)
+            assert read(tmp_path / "study" / JOURNAL) == ROWS[:count]
+
+
 def test_a_journal_that_is_cut_at_any_byte_has_all_whole_lines_and_goes_on(tmp_path: Path):
     whole = written(tmp_path / "study")
     head = whole.index(b"\n") + 1
