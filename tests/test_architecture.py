@@ -11,13 +11,13 @@ PACKAGE = TESTS.parent / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-FOUNDATION = ("errors", "checks", "arrays", "blas_threads", "serialization", "options", "version", "files", "views")
+FOUNDATION = ("errors", "checks", "arrays", "threads", "serialization", "options", "version", "files", "views")
 
 ROOMS = {
     "errors": (),
     "checks": ("errors",),
     "arrays": ("errors", "checks"),
-    "blas_threads": (),
+    "threads": (),
     "serialization": ("errors", "checks"),
     "options": ("errors", "checks"),
     "version": (),
@@ -27,7 +27,7 @@ ROOMS = {
     "spec": ("errors", "checks", "arrays", "files", "problems"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problems", "contact"),
-    "formulations.local_solver": ("errors", "checks", "arrays", "blas_threads"),
+    "formulations.local_solver": ("errors", "checks", "arrays", "threads"),
     "formulations": (*FOUNDATION, "contact", "formulations.local_solver"),
     "assessment": (*FOUNDATION, "contact"),
     "adaptivity": (*FOUNDATION, "problems", "contact", "bem", "formulations", "assessment"),

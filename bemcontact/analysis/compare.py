@@ -18,7 +18,6 @@ from bemcontact.analysis.solve import (
 )
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Attempt
-from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import ensure_callable
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import KeyPath, NotConvexError, OptionError, SolverError
@@ -39,6 +38,7 @@ from bemcontact.options import (
 )
 from bemcontact.problems.key_path import parsed_path
 from bemcontact.problems.problem import Problem
+from bemcontact.threads import one_thread
 
 HARMLESS = ("name", "description", "mesh", "reference", "case")
 """Keys of a spec that do not change its reference values; a reference says which load case it is of."""

@@ -21,7 +21,6 @@ from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.bem.condense import condensed
 from bemcontact.bem.modulus import modulus_rate
-from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import real_number, text_of_argument, texts
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
@@ -36,6 +35,7 @@ from bemcontact.problems.key_path import existing_path, parsed_path
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.quantities import in_units
 from bemcontact.problems.wording import described, unknown_word
+from bemcontact.threads import one_thread
 
 MODULUS = "young_modulus"
 BODY = ("material", "boundary", "mesh", "materials")

@@ -15,13 +15,13 @@ from bemcontact.analysis.solve import (
     read_options,
 )
 from bemcontact.assessment.accuracy import together
-from bemcontact.blas_threads import one_thread
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.multistart import solve_contact
 from bemcontact.formulations.starts import with_start_read
 from bemcontact.options import FormulationName, SolveOptions, SolvingKeywords, Weights
 from bemcontact.problems.problem import Problem
 from bemcontact.serialization import Record, Recorded
+from bemcontact.threads import one_thread
 from bemcontact.version import __version__
 from bemcontact.views import Tabular
 

@@ -11,7 +11,6 @@ from bemcontact.analysis import compare as comparing
 from bemcontact.analysis.mesh_study import LevelRecord, MeshLevel, MeshStudy, versions
 from bemcontact.analysis.solve import Progress
 from bemcontact.arrays import Array
-from bemcontact.blas_threads import one_thread
 from bemcontact.contact.record import UnitsRecord
 from bemcontact.errors import SpecError
 from bemcontact.options import ComparisonOptions, FormulationName
@@ -19,6 +18,7 @@ from bemcontact.problems import Problem, Table, Units, Values
 from bemcontact.reference.paper import PROBLEMS, PaperProblem, PaperQuantity, PaperStatement
 from bemcontact.reference.positions import coordinates
 from bemcontact.serialization import Record, Recorded, Vector
+from bemcontact.threads import one_thread
 
 FOLDER = "models"
 """Stands in the installed package, and beside the package in a source tree."""

@@ -19,7 +19,6 @@ from bemcontact.assessment.footprint import (
 from bemcontact.assessment.penetration import Penetration
 from bemcontact.assessment.residual import Residuals
 from bemcontact.bem.boundary_values import BoundaryState
-from bemcontact.blas_threads import one_thread
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.record import (
@@ -37,6 +36,7 @@ from bemcontact.options import FormulationName, Weights
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.units import Units
 from bemcontact.serialization import Pair, PairTables, Record, Recorded
+from bemcontact.threads import one_thread
 from bemcontact.version import __version__
 from bemcontact.views import Tabular
 

@@ -18,7 +18,6 @@ from bemcontact.assessment.residual import residuals
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.condense import Condensation, boundary_state
 from bemcontact.bem.surface_gaps import surface_gaps
-from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import ensure_callable, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
@@ -42,6 +41,7 @@ from bemcontact.options import (
     ensure_whole,
 )
 from bemcontact.problems.problem import Problem
+from bemcontact.threads import one_thread
 
 Progress = Callable[[str, str], object]
 """Takes the name of a stage and how far it has come; the latter is empty when the stage begins."""

@@ -13,11 +13,11 @@ from bemcontact.bem.body import Body
 from bemcontact.bem.condense import Condensation, boundary_columns, condensed
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.stress_field import StressField
-from bemcontact.blas_threads import one_thread
 from bemcontact.contact.stress import PointKind
 from bemcontact.contact.stress_operator import StressOperator
 from bemcontact.errors import ProblemError
 from bemcontact.problems.problem import Problem
+from bemcontact.threads import one_thread
 
 
 @one_thread

@@ -12,9 +12,7 @@ Blocks of points have their numbers in one array of rows of constant length STRI
 """
 
 import math
-import os
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numba
@@ -23,6 +21,7 @@ import numpy as np
 from bemcontact.arrays import Array, ComplexArray, IntArray
 from bemcontact.bem.flat import FlatColumns, FlatElements, FlatPoints, FlatRules
 from bemcontact.bem.kernels import Factors
+from bemcontact.threads import share_out
 
 STRIDE = 128
 """Largest block of points."""
@@ -462,17 +461,10 @@ def block_size(count: int) -> int:
 def add_all(
     out: Array, points: FlatPoints, elements: FlatElements, columns: FlatColumns, rules: FlatRules, factor: Factors
 ) -> None:
-    """Add the equations of all points, as `add_rows`, on all processors."""
+    """Add the equations of all points, as `add_rows`, in several threads."""
     step = block_size(len(points.base))
-    starts = np.arange(0, len(points.base), step)
-    workers = min(len(starts), os.cpu_count() or 1) if len(starts) > 1 else 1
-    if workers == 1:
-        add_rows(out, starts, step, points, elements, columns, rules, factor)
-        return
 
-    def work(some: IntArray) -> None:
-        add_rows(out, some, step, points, elements, columns, rules, factor)
+    def work(starts: Sequence[int]) -> None:
+        add_rows(out, np.array(starts), step, points, elements, columns, rules, factor)
 
-    with ThreadPoolExecutor(workers) as pool:
-        for _ in pool.map(work, [starts[first::workers].copy() for first in range(workers)]):
-            pass
+    share_out(work, range(0, len(points.base), step))

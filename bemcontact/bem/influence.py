@@ -9,9 +9,7 @@ Stresses are divided by the shear modulus.
 """
 
 import itertools
-import os
-from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -23,7 +21,7 @@ from bemcontact.bem import kernels, reference_element
 from bemcontact.bem.kernels import GaussRule
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.skeleton import RATIO, disc, skeleton
-from bemcontact.blas_threads import one_thread
+from bemcontact.threads import one_thread, share_out
 
 ROWS_PER_BLOCK = 160
 LARGEST_BLOCK = 400_000
@@ -32,12 +30,6 @@ CACHE_SIZE = 24_000
 """Kernel evaluations at a time: about ten arrays of them stay in the second-level cache."""
 SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which the elements that are far from a block of points share a rule."""
-
-
-def threads() -> int:
-    """Number of threads: that of processors, or fewer if the environment says so by OMP_NUM_THREADS."""
-    stated = os.environ.get("OMP_NUM_THREADS", "").strip()
-    return min(os.cpu_count() or 1, max(1, int(stated))) if stated.isdecimal() else os.cpu_count() or 1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -171,7 +163,7 @@ class Influence:
         return self.element_nodes - self.element_nodes[:, 1:2]
 
     def each_block(self, collocation: Collocation, use: Callable[[InfluenceRows], None]) -> None:
-        """Compute rows of F and G for all points and pass them to `use`, block by block, on `threads` processors.
+        """Compute rows of F and G for all points and pass them to `use`, block by block, in several threads.
 
         `use` is called from other threads and in any order; it must not keep the block. BLAS uses one thread meanwhile,
         because several threads are slower for products as small as these.
@@ -181,16 +173,14 @@ class Influence:
         if len(blocks) == 1:
             use(self.block(collocation, blocks[0]))
             return
-        workers = min(len(blocks), threads())
 
-        def work(some: list[slice]) -> None:
+        def work(some: Sequence[slice]) -> None:
             space = self._space(step)
             for rows in some:
                 use(self._block(collocation, rows, space))
 
-        with one_thread, ThreadPoolExecutor(workers) as pool:
-            for _ in pool.map(work, [blocks[first::workers] for first in range(workers)]):
-                pass
+        with one_thread:
+            share_out(work, blocks)
 
     def block(self, collocation: Collocation, rows: slice) -> InfluenceRows:
         """Rows of F and G for neighboring points."""

@@ -91,7 +91,7 @@ def study(
             from bemcontact.studies.axes import written_axes
             from bemcontact.studies.outputs import chosen
             from bemcontact.studies.plan import study_plan
-            from bemcontact.studies.workers import processors
+            from bemcontact.threads import processors
 
         def located(error: ProblemError) -> str:
             return source.located(error) if any(issue.path for issue in error.issues) else str(error)

@@ -8,7 +8,7 @@ from typing import Self
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
 from bemcontact.arrays import Array, IntArray
-from bemcontact.blas_threads import one_thread
+from bemcontact.threads import one_thread
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -7,12 +7,12 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, real_array
-from bemcontact.blas_threads import one_thread
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.complementarity import find_state
 from bemcontact.formulations.lemke import basic_solution, equilibrating, holds, holds_row_by_row, lemke
 from bemcontact.formulations.scaling import ScaledContact
+from bemcontact.threads import one_thread
 
 FAINT = 0.0, 1e-15, 1e-14, 1e-13, 1e-12
 """Parts of the largest variable that are taken for rounding, in turn, until each row holds beside its own terms."""

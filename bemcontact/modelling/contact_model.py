@@ -10,7 +10,6 @@ import cvxpy as cp
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import instance_of, real_number, shown
 from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -26,6 +25,7 @@ from bemcontact.modelling.model_result import ModelResult, judged, read_back, so
 from bemcontact.modelling.parameters import Parameters, Value
 from bemcontact.modelling.stress_bounds import ModelStress
 from bemcontact.options import Weights, ensure_whole
+from bemcontact.threads import one_thread
 
 WIDE = 1e5
 """Gaps over the displacements under the load from which a load is light: Clarabel's tolerance takes these digits."""

@@ -10,7 +10,6 @@ from pydantic import computed_field
 
 from bemcontact.arrays import Array, BoolArray, freeze_arrays
 from bemcontact.assessment.footprint import Footprint, footprint
-from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import real_number, shown, whole_number
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change, LoadCases, Pinned
@@ -22,6 +21,7 @@ from bemcontact.formulations.scaling import scale, scaled_change, scaled_point, 
 from bemcontact.options import FormulationName
 from bemcontact.parametric.pivoting import LinearChange, Trail, trail_along
 from bemcontact.serialization import Internal, Leaf, Matrix, Pair, PairTables, Vector
+from bemcontact.threads import one_thread
 
 COMMON = {
     "compliance": "compliance",

@@ -10,7 +10,6 @@ from pydantic import computed_field
 from bemcontact.arrays import IntArray, freeze_arrays, real_array
 from bemcontact.assessment.accuracy import NO_MESH, Accuracy
 from bemcontact.assessment.footprint import ContactInterval, end_rates, footprint, resting_ends
-from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import Change
@@ -21,6 +20,7 @@ from bemcontact.formulations.scaling import scale, scaled_change, scaled_point, 
 from bemcontact.parametric.path import NOT_PROVED
 from bemcontact.parametric.pivoting import WEAK, Tangent, is_monotone
 from bemcontact.serialization import Internal, Leaf, Pairs, Vector
+from bemcontact.threads import one_thread
 
 EXACT = 1e-9
 """Residual up to which a solution has a meaningful derivative."""

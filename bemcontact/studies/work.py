@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from threadpoolctl import threadpool_limits
 
-from bemcontact import blas_threads
+from bemcontact import threads
 from bemcontact.adaptivity.adapt import stated
 from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.analysis.result import Result
@@ -64,7 +64,7 @@ def rows_of_task(plan: StudyPlan, task: Task) -> Iterator[MemberRow]:
             yield failed_row(number, values, f"an error of the program, please report it: {error!r}")
 
 
-@blas_threads.one_thread
+@threads.one_thread
 def _solved(member: Problem, condenser: Condenser) -> Result:
     """Solve a member on the mesh that it states, or on one that is found."""
     if member.adapts:

@@ -23,12 +23,6 @@ ENDED = "the process that solved it was ended, perhaps because there was not eno
 Rows = Generator[MemberRow, None, None]
 
 
-def processors() -> int:
-    """Number of processors that this process may use."""
-    affinity = getattr(os, "sched_getaffinity", None)
-    return len(affinity(0)) if affinity else os.cpu_count() or 1
-
-
 @contextmanager
 def broken_pipes_are_errors() -> Iterator[None]:
     """Let a pipe or socket whose reader has ended raise an error, where it would end this process by SIGPIPE.

@@ -9,6 +9,7 @@ import pytest
 from bodies import MESHES, arc, even, mesh_of, rectangle, segment, solved, system_of, values_of, without_rigid_motion
 
 import bemcontact
+from bemcontact import threads
 from bemcontact.bem import system as system_module
 from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import condense
@@ -204,3 +205,11 @@ def test_constant_stress_is_exact_by_machine_code(fixed, monkeypatch):
     of_stress = np.sqrt(np.sum(mesh.tributary[..., None] * dt**2) / np.sum(mesh.tributary)) / abs(STRESS).max()
     assert abs(du).max() / abs(displacement(mesh.nodes)).max() < 1e-12
     assert of_stress < 1e-12
+
+
+@pytest.mark.parametrize("way", [0, 1])
+def test_both_take_as_many_threads_as_the_environment_says(monkeypatch, way):
+    """Workers of a study have one processor each."""
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")
+    monkeypatch.setattr(threads, "ThreadPoolExecutor", None)
+    assemble(both_ways(of_body(BODIES["two loops"], {}))[way])

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import bemcontact
-from bemcontact.blas_threads import one_thread
+from bemcontact.threads import one_thread
 
 MODELS = Path(__file__).parents[2] / "models"
 REPEATS = 5

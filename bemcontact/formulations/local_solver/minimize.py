@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bemcontact.arrays import Array, BoolArray, whole_array
-from bemcontact.blas_threads import one_thread
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.equilibration import Scales, equilibrate, unequilibrated
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
@@ -28,6 +27,7 @@ from bemcontact.formulations.local_solver.statement import (
     read_statement,
 )
 from bemcontact.formulations.local_solver.working_set import WorkingSet, supporting
+from bemcontact.threads import one_thread
 
 DEFAULTS = QPOptions()
 RENEWALS = 3

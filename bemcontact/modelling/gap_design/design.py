@@ -14,7 +14,6 @@ from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.certificate import certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
-from bemcontact.blas_threads import one_thread
 from bemcontact.checks.arguments import ensure_callable, instance_of, real_number, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
@@ -26,6 +25,7 @@ from bemcontact.formulations.scaling import scale
 from bemcontact.modelling.gap_design.contact_sets import BestProfile, SharedProfile
 from bemcontact.modelling.gap_design.designed_gap import GapDesign, Goal, LoadState, relieved
 from bemcontact.modelling.gap_design.relief import Profiles, Relief
+from bemcontact.threads import one_thread
 
 GAIN = 1e-8
 """Least relative gain of a step."""

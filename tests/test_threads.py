@@ -1,4 +1,7 @@
-"""BLAS takes one thread in all that is decorated, and as many as before when it is done."""
+"""How many threads assembly and BLAS take.
+
+BLAS takes one in all that is decorated, and as many as before when it is done.
+"""
 
 import os
 import subprocess
@@ -9,13 +12,13 @@ import numpy as np
 import pytest
 
 import bemcontact
-from bemcontact import blas_threads
-from bemcontact.blas_threads import WORTH_THREADS, one_thread
+from bemcontact import threads
+from bemcontact.threads import WORTH_THREADS, one_thread
 
 REAL = """
 import numpy as np
 from threadpoolctl import threadpool_info
-from bemcontact.blas_threads import one_thread
+from bemcontact.threads import one_thread
 def threads(): return {item["num_threads"] for item in threadpool_info() if item["user_api"] == "blas"}
 before = threads()
 with one_thread: inside = threads()
@@ -39,44 +42,44 @@ class Library:
 @pytest.fixture(autouse=True)
 def library(monkeypatch):
     found = Library()
-    monkeypatch.setattr(blas_threads, "_libraries", lambda: [found])
+    monkeypatch.setattr(threads, "_libraries", lambda: [found])
     monkeypatch.setattr(one_thread, "before", [])
     return found
 
 
 @pytest.fixture
-def threads(library):
+def taken(library):
     return lambda: {library.threads[-1]}
 
 
-def test_one_thread_until_the_last_is_done(threads):
+def test_one_thread_until_the_last_is_done(taken):
     with one_thread:
-        assert threads() == {1}
+        assert taken() == {1}
         with one_thread:
-            assert threads() == {1}
-        assert threads() == {1}
-    assert threads() == {2}
+            assert taken() == {1}
+        assert taken() == {1}
+    assert taken() == {2}
 
 
-def test_an_error_restores_them(threads):
+def test_an_error_restores_them(taken):
     with pytest.raises(ZeroDivisionError), one_thread:
         raise ZeroDivisionError
-    assert threads() == {2}
+    assert taken() == {2}
 
 
-def test_large_factors_take_all_of_them(threads):
+def test_large_factors_take_all_of_them(taken):
     with one_thread.lifted(WORTH_THREADS):
-        assert threads() == {2}
+        assert taken() == {2}
     with one_thread:
         with one_thread.lifted(WORTH_THREADS - 1):
-            assert threads() == {1}
+            assert taken() == {1}
         with one_thread.lifted(WORTH_THREADS):
-            assert threads() == {2}
-        assert threads() == {1}
-    assert threads() == {2}
+            assert taken() == {2}
+        assert taken() == {1}
+    assert taken() == {2}
 
 
-def test_threads_of_the_program_share_it(threads):
+def test_threads_of_the_program_share_it(taken):
     """One ends while the other is inside."""
     inside, done = threading.Event(), threading.Event()
 
@@ -90,10 +93,10 @@ def test_threads_of_the_program_share_it(threads):
     inside.wait()
     with one_thread:
         pass
-    assert threads() == {1}
+    assert taken() == {1}
     done.set()
     running.join()
-    assert threads() == {2}
+    assert taken() == {2}
 
 
 @pytest.mark.parametrize(
@@ -117,3 +120,18 @@ def test_the_real_libraries_are_set_and_restored():
 
 def test_solvers_work_inside():
     assert bemcontact.solve_lcp(np.eye(2), [-1.0, -1.0]).z == pytest.approx([1, 1])
+
+
+@pytest.mark.parametrize(("stated", "expected"), [("1", 1), ("2", 2), ("9", 3), ("", 3), ("many", 3)])
+def test_work_is_shared_out_to_as_many_threads_as_the_environment_says(monkeypatch, stated, expected):
+    monkeypatch.setenv("OMP_NUM_THREADS", stated)
+    monkeypatch.setattr(threads, "processors", lambda: 3)
+    met, done = threading.Barrier(expected, timeout=10), []
+
+    def work(items):
+        met.wait()  # all threads are at work at one time, or this fails
+        done.append(items)
+
+    threads.share_out(work, range(7))
+    assert sorted(item for items in done for item in items) == [*range(7)]
+    assert len(done) == expected

@@ -1,16 +1,22 @@
-"""How many threads BLAS takes: one, but for factors of large matrices.
+"""How many threads share the work: those of all processors for assembly, and one for BLAS but for large matrices.
 
-Products of vectors and small matrices are what contact problems mostly need. Several threads wait for each other in
-every one of them. On idle processors that makes a solver a few times slower, and on busy ones it may be thirty times.
+Products of vectors and small matrices are what contact problems mostly need. Several threads of BLAS wait for each
+other in every one of them. On idle processors that makes a solver a few times slower, and on busy ones it may be thirty
+times.
 """
 
+import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ContextDecorator, contextmanager
 from functools import lru_cache
+from typing import TypeVar
 
 import scipy.linalg  # noqa: F401 - loads the BLAS of SciPy
 from threadpoolctl import LibController, ThreadpoolController
+
+Item = TypeVar("Item")
 
 WORTH_THREADS = 1e10
 """Products of two numbers from which several threads share the work on a matrix: those of a factorization of size 3100.
@@ -18,6 +24,29 @@ WORTH_THREADS = 1e10
 Less work takes less than half a second on one thread. Two threads nearly halve that on idle processors. On busy ones
 they wait for each other, and take up to three times as long; for more work they lose nothing there.
 """
+
+
+def processors() -> int:
+    """Number of processors that this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
+def workers() -> int:
+    """Number of threads for assembly: that of processors, or fewer if the environment says so by OMP_NUM_THREADS."""
+    stated = os.environ.get("OMP_NUM_THREADS", "").strip()
+    return min(processors(), max(1, int(stated))) if stated.isdecimal() else processors()
+
+
+def share_out(work: Callable[[Sequence[Item]], object], items: Sequence[Item]) -> None:
+    """Let `work` do all items, some in each of several threads; with one worker or one item, in this thread."""
+    count = min(len(items), workers())
+    if count == 1:
+        work(items)
+        return
+    with ThreadPoolExecutor(count) as pool:
+        for _ in pool.map(work, [items[first::count] for first in range(count)]):
+            pass
 
 
 @lru_cache(maxsize=1)
