@@ -15,6 +15,10 @@ LARGEST_COPY = 2.5e8
 POINTS_OF_RESIDUAL = 512
 """Points whose rows machine code computes at a time for the refinement."""
 
+# Once a block of nearly 32 MB was freed, the allocator of glibc keeps up to 64 MB of free memory for the next matrices.
+# Else it returns the memory of each mesh, and the faults of new pages are a fifth of a condensation of 600 unknowns.
+np.empty(2**25 - 2**14, np.uint8)
+
 
 def assemble(system: System) -> tuple[Array, Array]:
     """Set up the bordered matrix (size, size), in Fortran order for LU in place, and the right sides (size, s + n)."""
