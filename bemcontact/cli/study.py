@@ -101,7 +101,7 @@ def study(
             axes = written_axes(vary)
         problem = source.problem(refine)
         with by_option("--output"):
-            shown = chosen(None if output is None else [item.strip() for item in output.split(",")], problem)
+            shown = chosen(output, problem)
         with by_option("--vary", located=located):
             plan = study_plan(problem, axes)
         if scheduler is not None and workers is not None:

@@ -60,9 +60,9 @@ class Study(StudyTable):
 def study(
     problem: Problem,
     vary: Mapping[Any, Sequence[Any]],
-    outputs: Sequence[str] | None = None,
+    output: str | Sequence[str] | None = None,
     *,
-    folder: str | Path | None = None,
+    out: str | Path | None = None,
     workers: int = 1,
     scheduler: str | None = None,
     progress: Progress | None = None,
@@ -80,8 +80,9 @@ def study(
         `Problem.with_value`; "variant"; "case" for load cases; "load_cases.wind" for the factor of one. A tuple of
         keys, or keys with commas between them, take the same values. "radius: KEY1,KEY2" names the column of the table.
         Of a problem with load cases all are solved, unless one is chosen.
-    outputs : names of outputs, such as "peak", "resultant", "force", "length.foot"; each row keeps all of them
-    folder : for tables, page and pictures, and for a journal from which a run that ended early goes on
+    output : names of outputs, such as "peak", "resultant", "force", "length.foot", in a list or with commas in a text;
+        each row keeps all of them
+    out : folder for tables, page and pictures, and for a journal from which a run that ended early goes on
     workers : number of processes; 1 solves in this process. With more, a script needs the line
         ``if __name__ == "__main__":``, because each process imports it.
     scheduler : address of a Dask scheduler, on whose workers the members are solved; needs the extra ``dask``
@@ -102,8 +103,8 @@ def study(
     """
     ensure_callable(progress, "progress")
     plan = study_plan(problem, vary, **asking)
-    shown = chosen(outputs, problem)
-    place = None if folder is None else file_path(folder, "folder")
+    shown = chosen(output, problem)
+    place = None if out is None else file_path(out, "out")
     if scheduler is not None:
         text_of_argument(scheduler, "scheduler")
     return study_of_plan(plan, shown, place, workers, scheduler, progress)

@@ -52,14 +52,14 @@ _HINTS = {
 """Usual cause of each error of the parser."""
 
 
-def load(path: str | os.PathLike[str], overrides: Changes = (), variant: str | None = None) -> Problem:
+def load(path: str | os.PathLike[str], set: Changes = (), variant: str | None = None) -> Problem:
     """Read a problem from a YAML file.
 
     Parameters
     ----------
     path : the file, in UTF-8 (or UTF-16 with a byte order mark)
-    overrides : changes such as ``material.young_modulus=2e6``, or a mapping of keys to values, made before the problem
-        is checked
+    set : changes such as ``material.young_modulus=2e6``, or a mapping of keys to values, made before the problem is
+        checked
     variant : name of a variant in the file, to which the changes are made; the problem itself if None
 
     Returns
@@ -80,17 +80,17 @@ def load(path: str | os.PathLike[str], overrides: Changes = (), variant: str | N
             f"load needs the path of a file; found a text of several lines, {shown(path)}; bemcontact.loads reads the "
             "text of a problem"
         )
-    return loads(text_of(path), os.fspath(path), overrides, variant)
+    return loads(text_of(path), os.fspath(path), set, variant)
 
 
-def loads(text: str, name: str = "<string>", overrides: Changes = (), variant: str | None = None) -> Problem:
+def loads(text: str, name: str = "<string>", set: Changes = (), variant: str | None = None) -> Problem:
     """Read a problem from a YAML text, see `load`.
 
     Parameters
     ----------
     text : YAML
     name : name of the text in error messages
-    overrides, variant : see `load`
+    set, variant : see `load`
 
     Returns
     -------
@@ -101,7 +101,7 @@ def loads(text: str, name: str = "<string>", overrides: Changes = (), variant: s
     SpecError
         If the text contains mistakes: a line ``name:line:column: key.path: message`` for each mistake.
     """
-    return _problem(_stages(text, name, overrides, variant))
+    return _problem(_stages(text, name, set, variant))
 
 
 def as_run(text: str, name: str, overrides: Changes = (), variant: str | None = None) -> str:
@@ -167,7 +167,7 @@ def _stages(text: str, name: str, overrides: Changes, variant: str | None) -> li
         text_of_argument(text, "what loads reads")
         if isinstance(overrides, Mapping):
             overrides = [f"{key}={json.dumps(value, default=_plain)}" for key, value in overrides.items()]
-        overrides = texts(overrides, "overrides, such as ['material.young_modulus=2e6'],")
+        overrides = texts(overrides, "set, such as ['material.young_modulus=2e6'],")
         text_of_argument("" if variant is None else variant, "the name of a variant")
     except ProblemError as error:
         raise SpecError(f"{name}: {error}") from None

@@ -119,12 +119,14 @@ def _reading(value: float, bar: float | None) -> Reading:
     return Reading(value=float(value), error=None if bar is None else float(bar * abs(value)))
 
 
-def chosen(outputs: Sequence[str] | None, problem: Problem) -> tuple[str, ...]:
+def chosen(output: str | Sequence[str] | None, problem: Problem) -> tuple[str, ...]:
     """Check names of outputs, such as ``peak``, ``force`` of all zones or ``force.foot``; the usual ones if None.
 
     `OptionError` for an unknown output, zone or mover.
     """
-    names = USUAL if outputs is None else texts(outputs, "outputs")
+    if isinstance(output, str):
+        output = [name.strip() for name in output.split(",")]
+    names = USUAL if output is None else texts(output, "output")
     if not names:
         raise OptionError(f"no output is named; there are: {', '.join(_known())}")
     for name in names:

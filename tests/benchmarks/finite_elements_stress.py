@@ -296,7 +296,7 @@ def compared(sizes: tuple[float, float], accuracies: tuple[float, ...]) -> Table
     begin = time.perf_counter()
     rough, fine = map(pressed, sizes)
     middle = time.perf_counter()
-    model = bemcontact.load(MODEL, overrides={"loads": LOADS, "reference": {}})
+    model = bemcontact.load(MODEL, set={"loads": LOADS, "reference": {}})
     results = [bemcontact.solve(model, accuracy=accuracy) for accuracy in accuracies]
     unknowns = " and ".join(str(one.body.freedoms.size) for one in (rough, fine))
     table = Table(

@@ -62,8 +62,8 @@ def parts(contact: CondensedContact) -> dict[str, Any]:
 Call = tuple[Callable[..., Any], Mapping[str, Any]]
 
 CALLS: dict[str, Call] = {
-    "load": (bemcontact.load, {"path": "no such file.yaml", "overrides": (), "variant": None}),
-    "loads": (bemcontact.loads, {"text": "a: 1", "name": "text", "overrides": (), "variant": None}),
+    "load": (bemcontact.load, {"path": "no such file.yaml", "set": (), "variant": None}),
+    "loads": (bemcontact.loads, {"text": "a: 1", "name": "text", "set": (), "variant": None}),
     "problem": (bemcontact.problem, {"parts": PROBLEM.to_dict()}),
     "problem, parts": (
         lambda **parts: bemcontact.problem({**PROBLEM.to_dict(), **parts}),
@@ -113,7 +113,7 @@ CALLS: dict[str, Call] = {
     "study": (
         bemcontact.study,
         {
-            "problem": ON_ITS_MESH, "vary": {"conditions.top.pressure": [1.0]}, "outputs": ("peak",), "workers": 1,
+            "problem": ON_ITS_MESH, "vary": {"conditions.top.pressure": [1.0]}, "output": ("peak",), "workers": 1,
             "scheduler": None, "accuracy": None, "progress": None,
         },
     ),

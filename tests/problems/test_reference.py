@@ -286,7 +286,7 @@ def test_references_are_checked_together_with_other_mistakes():
 
 
 def test_value_of_a_reference_can_be_set():
-    problem = bemcontact.loads(spec("{kind: hertz, load: 810, radius: 8}"), overrides=["reference.it.load=8.1"])
+    problem = bemcontact.loads(spec("{kind: hertz, load: 810, radius: 8}"), set=["reference.it.load=8.1"])
     assert problem.reference["it"].load == 8.1
     assert problem.with_value("reference.it.load", 3).reference["it"].load == 3
 

@@ -13,7 +13,7 @@ from bemcontact.reference import Expected, expected
 
 def only(spec: str, *overrides: str) -> tuple[Expected, bemcontact.CondensedContact]:
     """The only reference of a spec, evaluated."""
-    problem = bemcontact.loads(spec, overrides=overrides)
+    problem = bemcontact.loads(spec, set=overrides)
     contact = bemcontact.condense(problem)
     [one] = expected(problem, contact)
     return one, contact
@@ -139,7 +139,7 @@ def test_pressure_of_a_ring_is_uniform(rigid: str):
 
 def supports(span: float, gap: float, *overrides: str) -> tuple[Expected, Expected]:
     """The references to the end and to the prop of a beam."""
-    problem = bemcontact.loads(propped_beam(span, gap), overrides=overrides)
+    problem = bemcontact.loads(propped_beam(span, gap), set=overrides)
     end, prop = expected(problem, bemcontact.condense(problem))
     return end, prop
 

@@ -165,7 +165,7 @@ def test_a_plate_of_finite_size_is_off_in_the_second_order():
 
 def only(spec: str, *overrides: str) -> Expected:
     """The reference of a spec with few elements."""
-    problem = bemcontact.loads(spec.replace("accuracy: 3e-3", "accuracy: 0.3"), overrides=overrides)
+    problem = bemcontact.loads(spec.replace("accuracy: 3e-3", "accuracy: 0.3"), set=overrides)
     [one] = expected(problem, bemcontact.condense(problem))
     return one
 

@@ -33,7 +33,7 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 
 def test_rows_are_those_of_solve_and_a_failure_is_one_of_them():
-    study = bemcontact.study(CYLINDER, VARIED, ["peak"])
+    study = bemcontact.study(CYLINDER, VARIED, "peak")
     assert [row.values[LOAD] for row in study.rows] == [10.0, 10.0, 20.0, 20.0, -5.0, -5.0]
     for row in study.rows[:4]:
         peak = bemcontact.solve(CYLINDER.with_values(row.values)).footprint.peak
@@ -47,7 +47,7 @@ def test_rows_are_those_of_solve_and_a_failure_is_one_of_them():
 
 @pytest.mark.slow
 def test_a_folder_has_the_same_numbers_as_the_study(tmp_path: Path):
-    study = bemcontact.study(CYLINDER, VARIED, ["peak", "force"], folder=tmp_path / "study")
+    study = bemcontact.study(CYLINDER, VARIED, ["peak", "force"], out=tmp_path / "study")
     names = {path.name for path in (tmp_path / "study").iterdir()}
     assert names == {"study.html", "study.json", "study.csv", "study.parquet", JOURNAL, "figures"}
     told = json.loads((tmp_path / "study" / "study.json").read_text(encoding="utf-8"))
@@ -63,15 +63,15 @@ def test_a_folder_has_the_same_numbers_as_the_study(tmp_path: Path):
 @pytest.mark.slow
 def test_a_study_in_a_folder_solves_nothing_twice(tmp_path: Path, solved: list[int]):
     place = tmp_path / "study"
-    first = bemcontact.study(CYLINDER, VARIED, ["peak"], folder=place)
+    first = bemcontact.study(CYLINDER, VARIED, ["peak"], out=place)
     assert sorted(solved) == [*range(6)]
-    again = bemcontact.study(CYLINDER, VARIED, ["moment"], folder=place)  # another output is in the journal too
+    again = bemcontact.study(CYLINDER, VARIED, ["moment"], out=place)  # another output is in the journal too
     assert len(solved) == 6
     assert again.rows == first.rows
-    more = bemcontact.study(CYLINDER, {**VARIED, MODULUS: [900.0, 1000.0, 1100.0]}, ["peak"], folder=place)
+    more = bemcontact.study(CYLINDER, {**VARIED, MODULUS: [900.0, 1000.0, 1100.0]}, ["peak"], out=place)
     assert {more.rows[number].values[MODULUS] for number in solved[6:]} == {1000.0}
     assert [row.outputs for row in more.rows if row.values[MODULUS] != 1000.0] == [row.outputs for row in first.rows]
-    bemcontact.study(CYLINDER.with_value("material.poisson_ratio", 0.25), VARIED, ["peak"], folder=place)
+    bemcontact.study(CYLINDER.with_value("material.poisson_ratio", 0.25), VARIED, ["peak"], out=place)
     assert len(solved) == 9 + 6  # of another problem nothing is known
 
 
@@ -87,15 +87,15 @@ def test_a_run_that_is_interrupted_anywhere_goes_on_to_the_same_table(tmp_path: 
 
     for _ in range(6):
         with pytest.raises(KeyboardInterrupt):
-            bemcontact.study(CYLINDER, VARIED, ["peak"], folder=tmp_path / "study", progress=interrupt)
-    study = bemcontact.study(CYLINDER, VARIED, ["peak"], folder=tmp_path / "study", progress=interrupt)
+            bemcontact.study(CYLINDER, VARIED, ["peak"], out=tmp_path / "study", progress=interrupt)
+    study = bemcontact.study(CYLINDER, VARIED, ["peak"], out=tmp_path / "study", progress=interrupt)
     assert study.to_csv() == expected
     assert sorted(solved) == [*range(6)]
 
 
 def test_progress_says_how_far_it_has_come_and_how_long_it_takes(tmp_path: Path):
     said = list[tuple[str, str]]()
-    told = {"folder": tmp_path / "study", "progress": lambda stage, now: said.append((stage, now))}
+    told = {"out": tmp_path / "study", "progress": lambda stage, now: said.append((stage, now))}
     bemcontact.study(CYLINDER, VARIED, ["peak"], **told)
     assert said[0] == ("studying", "0 of 6 members")
     assert said[6][1].startswith("6 of 6 members, ")
@@ -118,7 +118,7 @@ def test_a_worker_that_ends_does_not_end_the_program_by_its_pipe():
 def test_a_foreign_folder_is_left_alone_before_any_work(tmp_path: Path, solved: list[int]):
     (tmp_path / "mine.txt").write_text("mine", encoding="utf-8")
     with pytest.raises(FileExistsError, match=r"mine\.txt, which is not part of a study"):
-        bemcontact.study(CYLINDER, VARIED, folder=tmp_path)
+        bemcontact.study(CYLINDER, VARIED, out=tmp_path)
     assert solved == []
 
 

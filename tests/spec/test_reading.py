@@ -529,11 +529,11 @@ def test_anchors_and_merged_mappings_are_read():
     ],
 )
 def test_override_replaces_one_value(override, found):
-    assert found(bemcontact.spec.loads(SPEC, overrides=[override]))
+    assert found(bemcontact.spec.loads(SPEC, set=[override]))
 
 
 def test_later_override_wins():
-    problem = bemcontact.spec.loads(SPEC, overrides=["material.young_modulus=2", "material.young_modulus=3"])
+    problem = bemcontact.spec.loads(SPEC, set=["material.young_modulus=2", "material.young_modulus=3"])
     assert problem.material.young_modulus == 3
 
 
@@ -541,9 +541,9 @@ def test_changes_may_be_a_mapping_of_values_by_key():
     """A key and its value say the same as the text `key=value`, also as numbers of NumPy."""
     values = {"material.young_modulus": np.float64(2e6), "material.poisson_ratio": 0.25, "description": "a: b"}
     texts = ["material.young_modulus=2e6", "material.poisson_ratio=0.25", "description='a: b'"]
-    assert bemcontact.loads(SPEC, overrides=values) == bemcontact.loads(SPEC, overrides=texts)
+    assert bemcontact.loads(SPEC, set=values) == bemcontact.loads(SPEC, set=texts)
     with pytest.raises(SpecError, match="an override cannot have the value"):
-        bemcontact.loads(SPEC, overrides={"description": object()})
+        bemcontact.loads(SPEC, set={"description": object()})
 
 
 @pytest.mark.parametrize(
@@ -611,10 +611,10 @@ VARIED = f"""{SPEC}variants:
 
 
 def test_variant_is_set_before_the_overrides():
-    problem = bemcontact.spec.loads(VARIED, overrides=["boundary.outer.top.elements=7"], variant="fine")
+    problem = bemcontact.spec.loads(VARIED, set=["boundary.outer.top.elements=7"], variant="fine")
     assert [edge.elements for edge in problem.boundary.edges] == [12, 2, 7, 2, 8]
     assert (problem.name, problem.variants) == ("block on a plane, fine", {})
-    overridden = bemcontact.spec.loads(VARIED, overrides=["material.poisson_ratio=0.1"], variant="fine")
+    overridden = bemcontact.spec.loads(VARIED, set=["material.poisson_ratio=0.1"], variant="fine")
     assert overridden.material.poisson_ratio == 0.1
     assert bemcontact.spec.loads(VARIED).edge("bottom").elements == 4
 

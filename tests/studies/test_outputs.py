@@ -50,6 +50,10 @@ def test_an_infinite_peak_is_no_number():
     assert found[f"intensity.{zone}"].value == result.accuracy.bar_of("intensity", zone).value
 
 
+def test_outputs_may_be_one_text_as_on_the_command_line():
+    assert chosen("peak, force.wall", ZONES) == chosen(["peak", "force.wall"], ZONES)
+
+
 def test_motions_of_tools_are_outputs():
     found = readings(bemcontact.solve(TOOLS))
     assert any(name.startswith("motion.") and item.error is not None for name, item in found.items())
@@ -72,7 +76,7 @@ def test_each_output_of_a_result_can_be_chosen():
         (["force.leftt"], "unknown contact zone 'leftt'"),
         (["force.y"], "output force.y: write force_y, or force_y.drum"),
         ([], "no output is named"),
-        ("peak", "list of texts"),
+        (7, "list of texts"),
     ],
 )
 def test_unknown_outputs_are_refused(outputs: list[str], says: str):
