@@ -70,9 +70,13 @@ def _worst(rows: tuple[MemberRow, ...], *, certified: bool) -> str:
     return _sentence(next(row for row in rows if row.certified is certified))
 
 
-def _first_note(row: MemberRow) -> str:
-    """The first note of a member on what its error bars do not include, in a sentence that names it."""
-    return _sentence(replace(row, message=f"{row.message.partition(BEYOND)[0]}{BEYOND} this"))
+def _left_out(study: StudyTable) -> str:
+    """Of how many members error bars do not include something, and the first note on it; empty if there are none."""
+    beyond = [row for row in study.rows if row.holds is not False and BEYOND in row.message]
+    if not beyond:
+        return ""
+    first = replace(beyond[0], message=f"{beyond[0].message.partition(BEYOND)[0]}{BEYOND} this")
+    return f"Error bars of {len(beyond)} {plural('member', len(beyond))} leave something out. {_sentence(first)}"
 
 
 def _sentence(row: MemberRow) -> str:
@@ -123,6 +127,9 @@ def render(study: StudyTable, pictures: Mapping[str, bytes], spec: str | None) -
         axes=[
             (axis.name, axis.keys if axis.keys != (axis.name,) else (), *_extent(axis.values)) for axis in study.axes
         ],
+        ranged=sentence_case(_ranged(study)),
+        left_out=_left_out(study),
+        ranges=[(name, *_range_of(study, name)) for name in study.columns],
         columns=[(name, unit_of_output(name, study.units)) for name in study.columns],
         rows=[*_cells(study, MOST_ROWS)],
         most=MOST_ROWS,
@@ -169,9 +176,7 @@ def study_summary(study: StudyTable, seconds: float, place: str | None = None) -
     for axis in study.axes:
         count, words = _extent(axis.values)
         axes.add_row(*map(Text, (axis.name, f"{count}: {words}")))
-    holding = sum(row.holds is not False for row in study.rows)
-    which = "output" if holding == len(study.rows) else f"output of the {holding} that hold{'s' * (holding == 1)}"
-    outputs = table_of(which, "smallest", "at", "largest", "at ")
+    outputs = table_of(_ranged(study), "smallest", "at", "largest", "at ")
     for name in study.columns:
         outputs.add_row(*map(Text, (name, *_range_of(study, name))))
     shown = list_of_facts()
@@ -184,15 +189,20 @@ def study_summary(study: StudyTable, seconds: float, place: str | None = None) -
             add(shown, "Note", _sentence(row))
     if len(short) > MOST_NAMED:
         add(shown, "Note", f"{len(short) - MOST_NAMED} further members do not hold; the table has the reason of each")
-    if beyond := [row for row in study.rows if row.holds is not False and BEYOND in row.message]:
-        count = f"{len(beyond)} {plural('member', len(beyond))}"
-        add(shown, "Note", f"error bars of {count} leave something out. {_first_note(beyond[0])}")
+    if left_out := _left_out(study):
+        add(shown, "Note", left_out)
     if place is not None:
         add(shown, "Written", place)
     for verdict in verdicts:
         add_verdict(shown, verdict)
     how = f"{len(study.rows)} {plural('member', len(study.rows))}, {seconds_in_words(seconds)}"
     return Group(Text(study.name, "bold"), Text(how, "dim"), "", axes, "", outputs, "", shown)
+
+
+def _ranged(study: StudyTable) -> str:
+    """Head of a column of outputs beside their ranges: of how many members these are."""
+    holding = sum(row.holds is not False for row in study.rows)
+    return "output" if holding == len(study.rows) else f"output of the {holding} that hold{'s' * (holding == 1)}"
 
 
 def _range_of(study: StudyTable, column: str) -> tuple[str, str, str, str]:

@@ -61,8 +61,9 @@ def test_the_summary_names_a_member_whose_error_bars_leave_something_out():
         second = row(1, MemberStatus.HOLDS, 200.0, text)
         console = Console(width=200, record=True, file=StringIO())
         console.print(study_summary(study(GOOD, second), 1.0))
-        note = "error bars of 1 member leave something out. Member 1 (a.b = 1): Off; error bars do not include this."
+        note = "Error bars of 1 member leave something out. Member 1 (a.b = 1): Off; error bars do not include this."
         assert (note in " ".join(console.export_text().split())) is ("bars" in text)
+        assert (note in read(render(study(GOOD, second), {}, None)).text) is ("bars" in text)
 
 
 def test_numbers_that_do_not_hold_are_in_no_range():
@@ -73,6 +74,10 @@ def test_numbers_that_do_not_hold_are_in_no_range():
         words = console.export_text()
         assert "900" not in words
         assert "output of the 1 that holds" in words
+        ranges = render(study(GOOD, second), {}, None).partition('id="ranges"')[2].partition("</section>")[0]
+        assert "Output of the 1 that holds" in ranges
+        assert "100 ± 1 MPa" in ranges
+        assert "900" not in ranges
 
 
 def test_the_page_has_each_number_with_its_error_and_no_markup_of_the_user():
