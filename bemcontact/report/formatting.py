@@ -123,7 +123,7 @@ def materials_in_words(problem: Problem) -> list[str]:
 
 
 def volume_loads(problem: Problem) -> Iterator[str]:
-    """Loads on the volume: ``gravity (0, -9.81)``, ``rotation 100 about (0, 0) (1.5 spinning)``."""
+    """Loads on the volume: ``gravity (0, -9.81), density 2``, ``temperature change 20, expansion 1e-05 (1.5 hot)``."""
     names = ["", *problem.load_cases]
     for name, each in zip(names, problem.volume_loads, strict=True):
         factor = problem.factors().get(name, 0.0) if name else 1.0
@@ -148,12 +148,15 @@ def _acting(case: str, factor: float) -> str:
 def _volume_loads(loads: Loads, part: Part) -> Iterator[str]:
     """Loads on the volume of a body."""
     if loads.gravity:
-        yield f"gravity {vector(loads.gravity.acceleration)}"
+        yield f"gravity {vector(loads.gravity.acceleration)}, density {number(loads.gravity.density)}"
     if loads.centrifugal:
-        yield f"rotation {number(loads.centrifugal.angular_velocity)} about {vector(loads.centrifugal.center)}"
+        turning = loads.centrifugal
+        speed = f"rotation {number(turning.angular_velocity)} about {vector(turning.center)}"
+        yield f"{speed}, density {number(turning.density)}"
     if loads.temperature:
         points = np.concatenate([edge.polyline() for edge in part.edges])
-        yield f"temperature change {_range(loads.temperature.change.at(points))}"
+        change = _range(loads.temperature.change.at(points))
+        yield f"temperature change {change}, expansion {number(loads.temperature.expansion)}"
 
 
 def tool_in_words(action: ToolAction, units: Units) -> str:

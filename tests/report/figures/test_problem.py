@@ -170,7 +170,11 @@ def test_volume_loads_are_drawn():
     legend = axes.get_legend()
     assert legend is not None
     said = [text.get_text() for text in legend.get_texts()]
-    assert said[-3:] == ["gravity (0, -9.81)", "rotation -3 about (1, 1)", "temperature change 20"]
+    assert said[-3:] == [
+        "gravity (0, -9.81), density 0.001",
+        "rotation -3 about (1, 1), density 0.001",
+        "temperature change 20, expansion 1e-05",
+    ]
 
 
 def test_names_are_on_their_own_side_of_a_slender_body():
