@@ -289,7 +289,9 @@ def _infinite(its: Sequence[Singularity]) -> str:
         )
     if any(item.place.end for item in its):
         return "infinite where contact reaches a corner of the body"
-    return "infinite at a corner or a kink"
+    return (
+        "infinite at a corner or a kink of the body or the surface; where it should be smooth, draw an arc or a fillet"
+    )
 
 
 def _change(before: float, after: float) -> float:

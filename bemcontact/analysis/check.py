@@ -116,6 +116,7 @@ def _smallest_gap(body: Body, zone: int) -> float:
 
 def drawable(problem: Problem) -> tuple[Problem, Mesh]:
     """A problem that may be refused and its mesh, for a picture; without contours that cannot be computed."""
+    problem = first_mesh(problem) if problem.adapts else problem
     mesh = build(problem)
     try:
         contours(problem, mesh)

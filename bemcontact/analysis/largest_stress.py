@@ -7,7 +7,7 @@ around, up to nearly the boundary. On lines of symmetry the body goes on in its 
 A maximum is below a contact if it lies at most 45 degrees beside it: near the ends of a contact it often does.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import NamedTuple, Self
 
@@ -68,6 +68,8 @@ def largest_stresses(body: BodyStress, whole: FilledBody, pressed: BoolArray) ->
         mirrors |= line.elements
     missing: dict[str, NoPeak] = {}
     samples = _Samples.of(body, whole)
+    if not np.nan_to_num(samples.stress.von_mises).any():
+        return _without_stress(problem.zones)
 
     def inside(label: str, below: BoolArray, surface: BoolArray, measure: Measure) -> StressPeak | None:
         search = _Search(body=body, samples=samples, mirrors=mirrors, below=np.flatnonzero(below), measure=measure)
@@ -94,6 +96,20 @@ def largest_stresses(body: BodyStress, whole: FilledBody, pressed: BoolArray) ->
         boundary=max(found, key=lambda peak: peak.value, default=None),
         singular=mesh.nodes[np.flatnonzero(body.singular)],
         missing=missing,
+    )
+
+
+def _without_stress(zones: Collection[str]) -> LargestStresses:
+    """The largest stresses of a body that nothing loads: none, and none is infinite."""
+    return LargestStresses(
+        shear=dict.fromkeys(zones),
+        inside=None,
+        boundary=None,
+        singular=np.zeros((0, 2)),
+        missing={
+            **dict.fromkeys(map(SHEAR_BELOW.format, zones), NoPeak.NO_CONTACT),
+            **dict.fromkeys([INSIDE, ON_BOUNDARY], NoPeak.NO_STRESS),
+        },
     )
 
 
@@ -220,7 +236,7 @@ class _Search:
         points, pairs, stress, element = self.samples
         outer = np.append(~self.mirrors[element], np.zeros(len(points) - len(element), bool))
         values = np.nan_to_num(self.measure(stress), nan=-np.inf)
-        if values.min() >= (1 - LEVEL) * values.max():
+        if values[np.isfinite(values)].min(initial=np.inf) >= (1 - LEVEL) * values.max():
             return np.zeros((0, 2)), np.zeros(0), np.zeros(0), np.zeros(0)
         lowest = values.copy()
         values = np.where(outer, -np.inf, values)

@@ -355,7 +355,8 @@ def _behind(gaps: SurfaceGaps, zone: str, behind: BoolArray) -> Iterator[str]:
     edges = sorted({gaps.state.edge_names[i] for i in gaps.state.edge[behind]})
     if edges:
         names = ", ".join(f"'{name}'" for name in edges)
-        remedy = "; state the surface as a body with rigid: true, which ends where it ends" * gaps.problem.several
+        endless = gaps.problem.several and zone not in gaps.problem.contacts
+        remedy = "; state the surface as a body with rigid: true, which ends where it ends" * endless
         yield (
             f"part of {names} lies behind the surface of '{zone}' as stated: the surface is taken to end before "
             f"it, and contact there was not looked at{remedy}"

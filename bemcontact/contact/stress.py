@@ -187,6 +187,7 @@ class StressPeak(WithHints):
 class NoPeak(StrEnum):
     """Why there is no largest stress."""
 
+    NO_STRESS = "nothing loads the body: it has no stress"
     NO_CONTACT = "the zone does not touch"
     TO_BOUNDARY = "no maximum inside the body: the largest value is on its boundary"
     TO_INFINITE = "no maximum: the stress grows towards a place where it is infinite"

@@ -14,7 +14,7 @@ SAME = 1e-10
 """Relative difference of arrays that is round-off of two condensations of one mesh."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class StressOperator:
     """σ = S_p p + S_a a + s_0 at k points, with s_0 = Σ_j f_j s_j over the loadings.
 
@@ -33,6 +33,10 @@ class StressOperator:
     """S_a (k, 4, r) [p/L]: zero, for free motions are rigid."""
     loads: Array
     """s_j (k, 4, 1 + c) [p] of the permanent loads, then of what each load case adds."""
+
+    def __repr__(self) -> str:
+        """One line: the number of points, and the contact."""
+        return f"<StressOperator at {len(self.points)} points of {self.contact!r}>"
 
     @property
     def constant(self) -> Array:

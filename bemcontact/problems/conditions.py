@@ -382,7 +382,8 @@ class Centrifugal(SpecModel):
 
     example: ClassVar[str] = "{density: 7.85e-9, angular_velocity: 300}"
     other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("rpm", "speed", "omega"), "write angular_velocity, in radians per time: 2 π/60 of the turns per minute"
+        ("rpm", "speed", "omega"),
+        "write angular_velocity, in radians per time: 2 π/60 of the turns per minute, or with its unit, 3000 rpm",
     )
 
     density: Positive

@@ -22,7 +22,10 @@ class Material(SpecModel):
         **dict.fromkeys(("plane", "plane_stress", "plane_strain"), "write state: plane_stress, or state: plane_strain"),
         **dict.fromkeys(("friction", "mu"), "contact is without friction; leave it out"),
         **dict.fromkeys(("G", "shear_modulus"), "write young_modulus and poisson_ratio: E = 2 G (1 + ν)"),
-        **dict.fromkeys(("alpha", "expansion"), "thermal expansion belongs to the load: loads.temperature.expansion"),
+        **dict.fromkeys(
+            ("alpha", "cte", "CTE", "expansion", "thermal_expansion", "thermal_expansion_coefficient"),
+            "thermal expansion belongs to the load: loads.temperature.expansion",
+        ),
     }
 
     young_modulus: Positive

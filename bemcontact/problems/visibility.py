@@ -6,9 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.problems.body_surface import AnyShape, BodyZone
+from bemcontact.problems.body_surface import AnyShape, BodySurface, BodyZone
 from bemcontact.problems.contact_zone import ContactZone
 from bemcontact.problems.curves import Edge, cross
+from bemcontact.problems.edge_places import AT_ENDS, places_along
 from bemcontact.problems.rigid_surface import DeflectedContour
 
 TURNED = 0.05
@@ -36,8 +37,10 @@ def edges_that_see(boundary: Sequence[Edge], surface: AnyShape) -> tuple[str, ..
     """Names of the edges that can touch a surface: from one of their places it is seen past the rest of the body.
 
     A place sees the surface if it is turned to it and the boundary does not cross the line to the nearest point of the
-    surface. So a place behind the surface sees it unless the body is behind it in all its thickness there.
+    surface. So a place behind the surface sees it unless the body is behind it in all its thickness there. The side of
+    a body may be narrow beside an edge: places that are opposite to it are among those of the edge.
     """
+    side = places_along(surface.edges).points if isinstance(surface, BodySurface) else np.zeros((0, 2))
     fractions = np.linspace(0, 1, SAMPLES)
     outline = [edge.points(fractions) for edge in boundary]
     starts, ends = [line[:-1] for line in outline], [line[1:] for line in outline]
@@ -45,9 +48,10 @@ def edges_that_see(boundary: Sequence[Edge], surface: AnyShape) -> tuple[str, ..
     size = float(np.hypot(*np.ptp(np.concatenate(outline), axis=0)))
     seeing = []
     for edge, line in zip(boundary, outline, strict=True):
-        places = line[1:-1]
+        opposite = edge.curve.nearest(side).clip(AT_ENDS, 1 - AT_ENDS)
+        places = np.concatenate([line[1:-1], edge.points(opposite)])
         gap, normals = surface.closest(places)
-        turned = turned_to(-edge.normals(fractions[1:-1]), normals)
+        turned = turned_to(-edge.normals(np.append(fractions[1:-1], opposite)), normals)
         feet = places - gap[:, None] * normals
         if not _blocked(places[turned], feet[turned], sides, ON_THE_WAY * size).all():
             seeing.append(edge.name)

@@ -128,7 +128,7 @@ def _rounded(values: Sequence[float], error: float, size: float | None = None) -
 def error_alone(error: float) -> str:
     """Write an error as it stands behind a number: 0.0008."""
     _, shown, power = _rounded((error,), error)
-    return shown + _exponent(power)
+    return error_alone(10.0 ** (power + 1)) if power and float(shown) == 10 else shown + _exponent(power)
 
 
 def _exponent(power: int) -> str:

@@ -274,16 +274,20 @@ def _peak_places(record: JsonObject, units: Units) -> list[str]:
     """Places where the largest pressure acts, if any; what is small beside the shortest contact is zero.
 
     All places are named where it is equal within its error. Where the pressure is the same at all points of contact of
-    a zone, the place would be that of round-off.
+    a zone, the place would be that of round-off. An infinite pressure has one place in each zone.
     """
-    if not record["peak"]:
-        return []
     error, several, scale = peak_bar(record) or 0.0, len({*record["zone"]}) > 1, resolved_size(record)
-    level = level_zones(record, error)
-    places = [f"all along {zone if several else 'the contact'}" for zone in level]
-    for i in equal_peaks(record, error):
-        if record["zone"][i] not in level:
-            places.append(vector(record["nodes"][i], units.length, scale=scale))
+    if infinite_peaks(record):
+        at = [bar["at"] for bar in bars_of(record, "peak") if bar["value"] is None and bar["at"]]
+        places = [vector(place, units.length, scale=scale) for place in at]
+    elif not record["peak"]:
+        return []
+    else:
+        level = level_zones(record, error)
+        places = [f"all along {zone if several else 'the contact'}" for zone in level]
+        for i in equal_peaks(record, error):
+            if record["zone"][i] not in level:
+                places.append(vector(record["nodes"][i], units.length, scale=scale))
     places = [*dict.fromkeys(places)]
     if len(places) > MOST_PLACES:
         places = [*places[: MOST_PLACES - 1], f"{len(places) - MOST_PLACES + 1} more places"]

@@ -122,15 +122,19 @@ def materials_in_words(problem: Problem) -> list[str]:
     return [f"{', '.join(names)}: {text}" if problem.several else text for text, names in bodies.items()]
 
 
-def volume_loads(problem: Problem) -> Iterator[str]:
-    """Loads on the volume: ``gravity (0, -9.81)``, ``rotation 100 about (0, 0) (1.5 spinning)``."""
+def volume_loads(problem: Problem, *, short: bool = False) -> Iterator[str]:
+    """Loads on the volume: ``gravity (0, -9.81), density 2``, ``temperature change 20, expansion 1e-05 (1.5 hot)``.
+
+    Short ones are without density and expansion.
+    """
     names = ["", *problem.load_cases]
     for name, each in zip(names, problem.volume_loads, strict=True):
         factor = problem.factors().get(name, 0.0) if name else 1.0
         for part, loads in zip(problem.parts, each, strict=True):
             of = f" on {part.name}" if part.name else ""
             case = f" ({_acting(name, factor)})" if name else ""
-            yield from (f"{load}{of}{case}" for load in _volume_loads(loads, part) if factor)
+            words = (load if short else f"{load}, {constant}" for load, constant in _volume_loads(loads, part))
+            yield from (f"{load}{of}{case}" for load in words if factor)
 
 
 def acting_volume_loads(problem: Problem) -> Iterator[tuple[float, Loads]]:
@@ -145,15 +149,18 @@ def _acting(case: str, factor: float) -> str:
     return case if factor == 1 else f"{factor:g} {case}"
 
 
-def _volume_loads(loads: Loads, part: Part) -> Iterator[str]:
-    """Loads on the volume of a body."""
+def _volume_loads(loads: Loads, part: Part) -> Iterator[tuple[str, str]]:
+    """Loads on the volume of a body, and the density or expansion that belongs to each."""
     if loads.gravity:
-        yield f"gravity {vector(loads.gravity.acceleration)}"
+        yield f"gravity {vector(loads.gravity.acceleration)}", f"density {number(loads.gravity.density)}"
     if loads.centrifugal:
-        yield f"rotation {number(loads.centrifugal.angular_velocity)} about {vector(loads.centrifugal.center)}"
+        turning = loads.centrifugal
+        speed = f"rotation {number(turning.angular_velocity)} about {vector(turning.center)}"
+        yield speed, f"density {number(turning.density)}"
     if loads.temperature:
         points = np.concatenate([edge.polyline() for edge in part.edges])
-        yield f"temperature change {_range(loads.temperature.change.at(points))}"
+        change = _range(loads.temperature.change.at(points))
+        yield f"temperature change {change}", f"expansion {number(loads.temperature.expansion)}"
 
 
 def tool_in_words(action: ToolAction, units: Units) -> str:
@@ -208,7 +215,8 @@ def deflected_by(zone: str, surface: DeflectedContour, problem: Problem) -> str:
         f"{name} {', '.join(_conditions(condition, problem.edge(name), problem.units))}"
         for name, condition in surface.conditions.items()
     ]
-    return "; ".join([*conditions, *_volume_loads(surface.loads, problem.touching_parts(zone)[0])])
+    loads = map(", ".join, _volume_loads(surface.loads, problem.touching_parts(zone)[0]))
+    return "; ".join([*conditions, *loads])
 
 
 def problem_in_words(problem: Problem) -> list[str]:

@@ -1,6 +1,6 @@
 """The page of a result, or of the results of all load cases: what was asked, the answer, what to rely on."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -224,6 +224,18 @@ def _case(name: str, result: Result, units: Units) -> dict[str, Any]:
     }
 
 
+def _infinite_at(results: Sequence[Result], zone: str, units: Units) -> str:
+    """Where the pressure of a zone is infinite in some results, if this is known."""
+    records = [result.to_dict() for result in results]
+    places = [
+        vector(bar["at"], units.length, scale=resolved_size(record))
+        for record in records
+        for bar in bars_of(record, "peak")
+        if bar["zone"] == zone and bar["at"]
+    ]
+    return " and ".join(dict.fromkeys(places)) or NOTHING
+
+
 def _formulations(comparisons: CaseComparisons) -> Iterator[dict[str, Any]]:
     """The verdict on each formulation under each load case, with its difference from the direct solution."""
     for case, level in comparisons.levels.items():
@@ -245,7 +257,7 @@ def _envelope(cases: Mapping[str, Result], units: Units) -> Iterator[tuple[str, 
     for order, zone in enumerate(first.contact.zone_names):
         infinite = [name for name, result in cases.items() if zone in result.accuracy.infinite]
         if infinite:
-            yield zone, "infinite", ", ".join(infinite), NOTHING
+            yield zone, "infinite", ", ".join(infinite), _infinite_at([cases[name] for name in infinite], zone, units)
             continue
         own = (first.contact.zone == order).nonzero()[0]
         most = max(cases, key=lambda name: float(cases[name].solution.pressure[own].max()))

@@ -126,6 +126,17 @@ def test_no_contact():
         bemcontact.solve(result.contact).largest_stresses()
 
 
+def test_no_load():
+    """A clamped body that nothing loads or touches has no stress, at the corners of its clamp neither."""
+    far = {"kind": "plane", "point": [0, 9], "normal": [0, -1]}
+    clamp = {"bottom": {"displacement": {"x": 0, "y": 0}}}
+    problem = block(2.0, [{"name": "top", "start": [2, 0]}], {"lid": {"edges": "top", "surface": far}}, clamp)
+    largest = bemcontact.solve(problem).largest_stresses()
+    assert (largest.shear, largest.inside, largest.boundary, largest.singular.size) == ({"lid": None}, None, None, 0)
+    without = dict.fromkeys(("von Mises, inside", "von Mises, on the boundary"), NoPeak.NO_STRESS)
+    assert largest.missing == {"shear below lid": NoPeak.NO_CONTACT, **without}
+
+
 def on_round_support(elements: int, mirrored: bool = False, unit: float = 1.0) -> bemcontact.Problem:
     """A block of 6 by 2 on a circle at three quarters of its length, on a coarse mesh, or its mirror image."""
     corners = [("bottom", 0, 0), ("right", 6, 0), ("top", 6, 2), ("left", 0, 2)]

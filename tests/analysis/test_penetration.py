@@ -227,6 +227,34 @@ def test_what_lies_behind_a_surface_is_noted_and_what_is_flush_is_left_out(eleme
     assert "'right', 'step', 'under'" in note
 
 
+def test_a_rigid_body_is_advised_where_a_surface_has_no_end():
+    """A plane below a body with a foot goes on behind the foot; the side of another body is one already."""
+    foot = [(0, 0), (4, 0), (4, -2), (8, -2), (8, 6), (0, 6)]
+    names = ["sole", "step", "under", "right", "top", "left"]
+    bodies = {
+        "foot": {
+            "material": {"young_modulus": E, "poisson_ratio": NU},
+            "boundary": {"outer": [{"name": n, "start": at, "elements": 3} for n, at in zip(names, foot, strict=True)]},
+            "conditions": {"top": {"pressure": 1}, "left": {"displacement": {"x": 0, "y": 0}}},
+        },
+        "plate": {
+            "material": {"young_modulus": E, "poisson_ratio": NU},
+            "boundary": {"outer": [{"name": n, "start": at, "elements": 3} for n, at in
+                                   (("top", (4, 0)), ("left", (0, 0)), ("base", (0, -4)), ("right", (4, -4)))]},
+            "conditions": {"base": {"displacement": {"x": 0, "y": 0}}},
+        },
+    }  # fmt: skip
+    plane = {"kind": "plane", "point": (0, 0), "normal": (0, 1)}
+    stated = [
+        {"contact_zones": {"floor": {"edges": "foot/sole", "surface": plane}}},
+        {"contacts": {"floor": {"between": ["foot/sole", "plate/top"]}}},
+    ]
+    for more, advised in zip(stated, (True, False), strict=True):
+        result = solve(Problem(name="foot", accuracy=None, bodies=bodies, **more))  # pyright: ignore[reportArgumentType]
+        (note,) = [note for note in result.notes if "behind the surface of 'floor'" in note]
+        assert ("a body with rigid: true" in note) is advised
+
+
 def block(corners, zones, conditions, *, elements=3, **more):
     """A polygon with the edges 0, 1, ... and these zones, each as edges and surface."""
     outer = [{"name": str(i), "start": tuple(at), "elements": elements} for i, at in enumerate(corners)]

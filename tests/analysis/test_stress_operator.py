@@ -69,6 +69,7 @@ def test_loads_of_cases_add_up():
         found = operator.at(result.solution.pressure)
         assert abs(found.components - stress.components).max() < 1e-10 * abs(stress.components).max()
         assert operator.constant == pytest.approx(operator.loads @ [1, *result.contact.cases.factors])
+        assert repr(operator) == f"<StressOperator at {len(points)} points of {result.contact!r}>"  # no arrays
 
 
 def test_heat_and_weight_are_constants():

@@ -128,9 +128,14 @@ def test_condensed_problem_keeps_its_cases(tmp_path: Path):
         ("contact_zones:", "loads: {gravity: 3}\nmesh: {refine: 0}\ncontact_zones:"),
     ],
 )
-def test_check_draws_what_can_be_read_of_a_refused_problem(block: Path, tmp_path: Path, old: str, new: str):
-    picture = tmp_path / "picture.svg"
-    block.write_text(BLOCK.replace(old, new), encoding="utf-8")
+@pytest.mark.parametrize("elements", ["stated", "found"])
+def test_check_draws_what_can_be_read_of_a_refused_problem(
+    block: Path, tmp_path: Path, old: str, new: str, elements: str
+):
+    picture, text = tmp_path / "picture.svg", BLOCK.replace(old, new)
+    if elements == "found":
+        text = re.sub(r", elements: \d|accuracy: null\n", "", text)
+    block.write_text(text, encoding="utf-8")
     answer = run("check", block, "--figure", picture)
     assert answer.exit_code == 2
     assert "error: " in answer.stderr

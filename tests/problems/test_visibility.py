@@ -112,3 +112,23 @@ def test_zones_that_no_edge_can_touch_are_refused(zones, conditions, facts):
     with pytest.raises(ProblemError) as caught:
         problem(zones, conditions)
     assert_states(str(caught.value), facts)
+
+
+@pytest.mark.parametrize("first", [-90, 0, 91, 180])
+@pytest.mark.parametrize("drawn", [0.0, 3.0])
+def test_a_wheel_sees_a_narrow_rail_wherever_its_circle_begins(first: float, drawn: float):
+    """The rail is a tenth as wide as the places of the circle are apart; the bore is behind the rim."""
+    steel = {"young_modulus": 1000.0, "poisson_ratio": 0.3}
+    rim = {"name": "rim", "kind": "arc", "center": [0, 100 + drawn], "radius": 100, "angles": [first, first + 360]}
+    bore = {"name": "bore", "kind": "arc", "center": [0, 100 + drawn], "radius": 40, "angles": [360, 0]}
+    foot = {"name": "foot", "start": [-1, -5], "end": [1, -5]}
+    rail = [foot, {"name": "right", "end": [1, 0]}, {"name": "head", "end": [-1, 0]}, {"name": "left"}]
+    its = Problem(
+        name="wheel on a rail",
+        bodies={  # pyright: ignore[reportArgumentType]
+            "wheel": {"material": steel, "boundary": {"outer": [rim], "holes": [[bore]]}},
+            "rail": {"material": steel, "boundary": {"outer": rail}, "conditions": {"foot": {"fixed": True}}},
+        },
+        contacts={"track": {"between": ["wheel", "rail/head"]}},  # pyright: ignore[reportArgumentType]
+    )
+    assert its.edges_of("track") == ("wheel/rim",)

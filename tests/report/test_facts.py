@@ -11,7 +11,14 @@ from hypothesis import strategies as st
 
 import bemcontact
 from bemcontact.problems import Units
-from bemcontact.report.bars import LEAST_SHOWN, accuracy_rows, error_percent, with_bar, without_digits_beyond
+from bemcontact.report.bars import (
+    LEAST_SHOWN,
+    accuracy_rows,
+    error_alone,
+    error_percent,
+    with_bar,
+    without_digits_beyond,
+)
 from bemcontact.report.facts import contact_intervals, facts, peak_of, peak_place
 
 UNITS = Units(length="cm", force="kN")
@@ -218,3 +225,12 @@ def test_many_contacts_at_one_place_are_counted():
 
     assert contact(0.0, 1e-7, 2e-7, 3.0) == ["narrow, at (25, 15) mm"] * 3 + contact(3.0)
     assert contact(3.0) == ["(28, 15) to (28.00000001, 15) mm, 1e-08 mm long"]
+
+
+@pytest.mark.parametrize(
+    ("error", "written"),
+    [(8e-4, "0.0008"), (9.96e-5, "0.0001"), (4.1e-5, "5e-05"), (9.96e-7, "1e-06"), (9.96e6, "1e+07"), (9.96, "10")],
+)
+def test_an_error_alone_is_rounded_up_to_one_figure(error: float, written: str):
+    """An error that is rounded up to ten of a power is one of the next power."""
+    assert error_alone(error) == written

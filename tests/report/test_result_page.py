@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from mesh_studies import punch
 from page_reader import ensure_self_contained, read
 from results import EACH, cases, condensed, punched, rolled
 from tool_problems import FREE, FREE_CASES, made
@@ -102,6 +103,15 @@ def test_the_picture_of_the_problem_says_whose_loads_it_shows():
     text = read(render(cases(), {"problem": b"<svg/>"}, None)).text
     assert f"; with the loads of {first}" in text
     assert "with the loads of" not in read(render(rolled(), {"problem": b"<svg/>"}, None)).text
+
+
+def test_an_infinite_pressure_has_its_place_in_the_head_and_under_load_cases():
+    """The edge of the punch is at (2, 0)."""
+    alone = {"loads": {"temperature": {"expansion": 1e-5, "change": 0}}}
+    head = together(read(render(punched(), {}, None)).text).split("Equations:")[0]
+    assert "infiniteat(2,0)mm" in head
+    both = bemcontact.solve_cases(punch(load_cases={"alone": alone}))
+    assert "infinitealone(2,0)mm" in together(read(render(both, {}, None)).text)
 
 
 def test_load_cases_have_the_largest_of_all():

@@ -228,7 +228,11 @@ def test_volume_loads_are_listed():
     heat = {"expansion": 1e-5, "change": {"constant": 20, "y": 0.5}}  # y from 0 to 20
     loads = {"gravity": gravity, "centrifugal": spin, "temperature": heat}
     problem = Problem(**{**block().model_dump(), "loads": loads})
-    lines = ["gravity (0, -9.81)", "rotation 5 about (1, 30)", "temperature change 20 … 30"]
+    lines = [
+        "gravity (0, -9.81), density 1",
+        "rotation 5 about (1, 30), density 1",
+        "temperature change 20 … 30, expansion 1e-05",
+    ]
     assert [*formatting.volume_loads(problem)] == lines
     answer = printed(problem_text.problem_summary(check(problem)))
     assert all(line in answer for line in lines)
@@ -446,7 +450,7 @@ def test_check_shows_the_factors_of_the_acting_case():
     told = shown(problem_text.problem_summary(check(made(HELD, **HELD_CASES, case="all"))))
     assert told.startswith("held block, all\n")
     assert "pressure 2, t_x = 1 (1.5 wind), t_y = -2 (1.5 wind)" in told
-    assert "temperature change 20 … 50 (-0.5 heat)" in told
+    assert "temperature change 20 … 50, expansion 1e-05 (-0.5 heat)" in told
     assert "punch, the surface of punch: loaded by y = -61, moment = 0.2" in told
     assert "table, the surface of table: displaced by y = 0.004, rotation = 0.00065" in told
 

@@ -237,9 +237,9 @@ class GapDesign(Leaf, Tabular):
         ends = [contact.points_of_run(run)[[0, -1]] for run in runs.tolist() if np.isinf(contact.run_length[run])]
         reached = sum(bool((state.pressure[np.ravel(ends).astype(int)] > 0).any()) for state in self.after)
         return (
-            f" Contact reaches an end of the zone in {reached} of {len(self.after)} load states. If the surface or the "
-            "body has a sharp edge there, the pressure at it is infinite with any profile, and all of these numbers "
-            "hold at the contact points of this mesh only."
+            f" Contact reaches an end of the zone in {reached} of {len(self.after)} load states. If this is no line of "
+            "symmetry, and the surface or the body has a sharp edge there, the pressure at it is infinite with any "
+            "profile, and all of these numbers hold at the contact points of this mesh only."
             if reached
             else ""
         )

@@ -80,6 +80,8 @@ FLUSH = 1e-6
 """Gap over the body's size between a plane and an edge that lies in it."""
 MANY = 4
 """Number of elastic bodies up to which each edge has its name; of more, edges with room for it have one."""
+MANY_EDGES = 16
+"""Number of edges up to which each has its name; of more, short ones that are free have one where there is room."""
 SHORT = 0.2
 """Length over the body's size of an edge that has too little room for its name; it may stand beyond the ends."""
 
@@ -479,7 +481,8 @@ def _name(problem: Problem, edge: Edge, body: int, crowded: bool) -> Name:
     name = edge.name.removeprefix(f"{problem.part_of(edge.name)}/") if crowded else edge.name
     fractions = np.array([0.5, 0.4, 0.6, 0.25, 0.75, 0.12, 0.88])
     anchors, outward = edge.points(fractions), edge.normals(fractions)
-    ends = np.array([0.02, 0.98] if edge.length < SHORT * problem.size else [])
+    short = edge.length < SHORT * problem.size
+    ends = np.array([0.02, 0.98] if short else [])
     slanted = (edge.normals(ends) + edge.directions(ends) * np.sign(ends - 0.5)[:, None]) / np.sqrt(2)
     return Name(
         text="\n".join([wrapped(name, 28), *(_symbols(short_label(line, 40)) for line in _folded(lines))]),
@@ -487,7 +490,7 @@ def _name(problem: Problem, edge: Edge, body: int, crowded: bool) -> Name:
         anchors=np.concatenate([anchors, anchors, edge.points(ends)]),
         directions=np.concatenate([-outward, outward, slanted]),
         body=body,
-        optional=crowded,
+        optional=crowded or (short and not lines and len(problem.edges) > MANY_EDGES),
     )
 
 
@@ -504,7 +507,7 @@ def _draw_legend(axes: Axes, problem: Problem) -> None:
         handles.append(Line2D([], [], color=GREEN, linewidth=1.3, label="force on a tool"))
     if problem.contact_zones or not all(map(problem.is_elastic, problem.bodies)):
         handles.append(Line2D([], [], color=GREY, linewidth=1.3, label="rigid surface, normal"))
-    handles += [Line2D([], [], linestyle="none", label=load) for load in volume_loads(problem)]
+    handles += [Line2D([], [], linestyle="none", label=load) for load in volume_loads(problem, short=True)]
     axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
 
 
