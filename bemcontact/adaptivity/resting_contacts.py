@@ -6,7 +6,7 @@ normals along a curved boundary are off by the motion over its radius, and by mo
 and faces are found once more after the motion, until they rest.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +15,7 @@ from bemcontact.adaptivity.fields import CaseAnswer, Solved, solved_state
 from bemcontact.arrays import Array
 from bemcontact.bem.body import Body
 from bemcontact.bem.condense import Condenser
+from bemcontact.bem.contact_points import ALIKE
 from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.bem.symmetry import symmetry_lines
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -41,6 +42,8 @@ JUMPS = 10.0
 """How much more a peak may change where the curvature of an outline jumps: there the gap as drawn has a corner."""
 ROUND_OFF = 1e-9
 """Distance of two lines of symmetry over the size of the bodies, up to which they are one; motion that is none."""
+Curved = LineSurface | BodySurface
+"""A rigid surface that may be curved."""
 MOST_STEPS = 12
 """Steps in which the pairs have to come to rest."""
 SLOWEST = 0.5
@@ -87,7 +90,7 @@ def _pairs(problem: Problem) -> dict[str, BodySurface]:
     return {name: it for name, it in surfaces.items() if isinstance(it, BodySurface) and it.first}
 
 
-def _curved(problem: Problem) -> dict[str, LineSurface | BodySurface]:
+def _curved(problem: Problem) -> dict[str, Curved]:
     """Rigid surfaces that are curved or may turn, by name of the zone: along a straight one nothing else changes.
 
     Not those with a corner that presses on an edge: an element ends there, which does not follow it.
@@ -104,7 +107,7 @@ def _curved(problem: Problem) -> dict[str, LineSurface | BodySurface]:
     }
 
 
-def _is_straight(surface: LineSurface | BodySurface) -> bool:
+def _is_straight(surface: Curved) -> bool:
     """Whether a rigid surface has straight faces only."""
     edges = surface.edges if isinstance(surface, BodySurface) else ()
     return isinstance(surface, Plane) or (bool(edges) and all(isinstance(edge.curve, Segment) for edge in edges))
@@ -164,32 +167,63 @@ def _ways_of_rigid(case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:
     displacement[body.mesh.elements] = case.displacement
     scale, (inward, reach) = contact.scales.displacement, body.outline.sides
     touched = contact.initial_gap + solution.displacement <= scale
-    for name, surface in _curved(body.problem).items():
-        beside = np.flatnonzero(touched & (contact.zone == names.index(name)))
+    for surfaces in _going_on(body, _curved(body.problem)):
+        own = np.isin(contact.zone, [names.index(name) for name in surfaces])
+        beside = np.flatnonzero(touched & own)
         at, force = body.points.node[beside], (contact.weights * solution.pressure)[beside]
         if not force.any():
             continue
-        places, tool = body.mesh.nodes[at], gaps.way_of_tool(name)
+        places, tool = body.mesh.nodes[at], gaps.way_of_tool(next(iter(surfaces)))
         spin, steps = tool._replace(x=0.0, y=0.0), tool.step - displacement[at]
         motion = steps + spin.motion_of(places - steps)
         mean, step = (force @ item / force.sum() for item in (motion, steps))
         spread = np.sqrt(force @ (motion - mean) ** 2 / force.sum())
         still = abs(motion).min(axis=0) <= ROUND_OFF * abs(motion).max()  # as at a line of symmetry
         x, y = (step - np.where(still | (abs(mean) <= AS_A_WHOLE * spread), mean, 0.0)).tolist()
-        way, found, moments = spin._replace(x=x, y=y), list[Faces](), list[float]()
-        for item in (surface, surface.after(way)):
-            faces, moved = item.faces(places, inward[at], reach[at]), steps + spin.motion_of(places - item.way.step)
-            found.append(faces._replace(gap=faces.gap - np.einsum("ksx,kx->ks", faces.normals, moved)))
-            moments.append(float(force @ cross(places - item.way.step - tool.about, faces.normals[:, 1])))
-        now, there = found
-        off = float(abs(there.gap - now.gap).max()) / scale
-        turned = 0.0 if _is_straight(surface) else float(np.hypot(*(there.normals - now.normals).T).max())
-        part = max(off, turned) / 2
-        part *= JUMPS if isinstance(surface, BodySurface) else 1.0
-        if any(tool.free[2] for tool in body.problem.tools.values() if name in tool.zones):
-            lever = abs(moments[1] - moments[0]) / force.sum()
-            part = max(part, lever / contact.weights[beside][force > 0].sum())
-        yield name, way, part
+        way, part = spin._replace(x=x, y=y), 0.0
+        for name, surface in surfaces.items():
+            mine, found, moments = contact.zone[beside] == names.index(name), list[Faces](), list[float]()
+            if not force[mine].any():
+                continue
+            there, moved = places[mine], steps[mine]
+            for item in (surface, surface.after(way)):
+                faces = item.faces(there, inward[at[mine]], reach[at[mine]])
+                motion = moved + spin.motion_of(there - item.way.step)
+                found.append(faces._replace(gap=faces.gap - np.einsum("ksx,kx->ks", faces.normals, motion)))
+                moments.append(float(force[mine] @ cross(there - item.way.step - tool.about, faces.normals[:, 1])))
+            now, after = found
+            off = float(abs(after.gap - now.gap).max()) / scale
+            turned = 0.0 if _is_straight(surface) else float(np.hypot(*(after.normals - now.normals).T).max())
+            part = max(part, max(off, turned) / 2 * (JUMPS if isinstance(surface, BodySurface) else 1.0))
+            if any(tool.free[2] for tool in body.problem.tools.values() if name in tool.zones):
+                lever = abs(moments[1] - moments[0]) / force[mine].sum()
+                part = max(part, lever / contact.weights[beside][mine & (force > 0)].sum())
+        yield from ((name, way, part) for name in surfaces)
+
+
+def _going_on(body: Body, surfaces: Mapping[str, Curved]) -> Iterator[dict[str, Curved]]:
+    """Rigid surfaces of zones, those together that go on in one another at a node: it is one place of one surface."""
+    mesh, tied, (inward, reach) = body.mesh, body.points.tied, body.outline.sides
+    tool_of = {zone: name for name, tool in body.problem.tools.items() for zone in tool.zones}
+    names, left = [*body.problem.zones], dict(surfaces)
+    nodes = {name: np.unique(mesh.elements[body.outline.in_zones[names.index(name)]]) for name in left}
+
+    def go_on(one: str, two: str) -> bool:
+        common, i, j = np.intersect1d(tied[nodes[one]], tied[nodes[two]], return_indices=True)
+        if not len(common) or tool_of.get(one) != tool_of.get(two):
+            return False
+        first, second = (
+            surfaces[name].faces(mesh.nodes[at], inward[at], reach[at])
+            for name, at in ((one, nodes[one][i]), (two, nodes[two][j]))
+        )
+        beside = np.hypot(*(first.normals - second.normals)[:, 1].T), abs(first.gap - second.gap)[:, 1] / mesh.size
+        return bool(np.any(np.maximum(*beside) <= ALIKE))
+
+    while left:
+        group = [next(iter(left))]
+        for one in group:
+            group += [two for two in left if two not in group and go_on(one, two)]
+        yield {name: left.pop(name) for name in group}
 
 
 def _axes_of_symmetry(body: Body, contact: str) -> list[int]:
@@ -240,7 +274,7 @@ def motions_of_pairs(
     gaps = np.array([touching[name].offset if name in touching else 0.0 for name in names])
     motion -= gaps[contact.zone, None] * contact.normals
     found = dict[str, PairMotion]()
-    for signs in moved_together(touching):
+    for signs in moved_together(touching, body.problem.bonded_groups):
         own, sign = [names.index(name) for name in signs], np.array([*signs.values()])
         signed = sign[:, None] * contact.weights_by_zone[own] * pressure
         force = abs(signed).sum()

@@ -17,8 +17,9 @@ from bemcontact.adaptivity.wedge_exponents import (
 )
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
-from bemcontact.bem.mesh import CORNER
+from bemcontact.bem.mesh import CORNER, Mesh
 from bemcontact.problems.curves import cross
+from bemcontact.problems.material import Material
 from bemcontact.problems.nearest_places import surface_corners
 
 GROWING = 1.04, 1.9
@@ -269,20 +270,53 @@ def _wedges_at(
 ) -> tuple[ElasticWedge, tuple[complex, ...], OppositeWedge | None]:
     """The elastic wedge at a position of a run, the tractions on its faces [p], and the one that it touches.
 
-    Tractions on the faces of the latter come last.
+    Tractions on the faces of the latter come last. Bonded wedges of one material are one; of two, the one beyond the
+    bond is the second one.
     """
     mesh, elements = solved.mesh, run_elements(solved, run)
     at = int(np.argmin(np.abs(run.ends - position))) % (len(elements) if run.closed else len(elements) + 1)
     after = int(elements[at] if at < len(elements) else np.argmax(mesh.before == elements[-1]))
     wedge, loads = _wedge_at(solved, answer, after)
     facing = solved.body.points.facing.get([*solved.body.problem.zones].index(run.zone))
-    if facing is None:
+    touched, bonded = (_beyond(mesh, each, after) for each in (facing, _across_bonds(solved)))
+    other = touched
+    if bonded not in (None, touched):
+        it, its_loads = _wedge_at(solved, answer, bonded)
+        first, last = ((wedge, loads), (it, its_loads))[:: 1 if wedge[2][1].bonded else -1]
+        if _material_of(solved, bonded) == _material_of(solved, after):  # both are one wedge
+            faces = first[0][2][0], last[0][2][1]
+            wedge, loads = (first[0][0], first[0][1] + last[0][1], faces, wedge[3]), (first[1][0], last[1][1])
+        else:
+            other = bonded
+    if other is None:
         return wedge, loads, None
+    it, its_loads = _wedge_at(solved, answer, other)
+    if other == bonded != touched:  # what its faces touch is not the first wedge
+        it = (*it[:2], (it[2][0]._replace(contact=False), it[2][1]._replace(contact=False)), it[3])
+    moduli = solved.body.shear_moduli[[after, other]]
+    return wedge, (*loads, *its_loads), OppositeWedge(*it, stiffness=float(moduli[1] / moduli[0]))
+
+
+def _beyond(mesh: Mesh, facing: IntArray | None, after: int) -> int | None:
+    """The element that starts opposite to the start of an element, by what faces each one (m,); None without one."""
     before = mesh.before[after]
-    across = facing[before] if facing[before] >= 0 else mesh.elements[facing[after], 2]
-    other, their_loads = _wedge_at(solved, answer, int(across))
-    moduli = [solved.body.shear_moduli[element] for element in (after, across)]
-    return wedge, (*loads, *their_loads), OppositeWedge(*other, stiffness=float(moduli[1] / moduli[0]))
+    if facing is None or max(facing[before], facing[after]) < 0:
+        return None
+    return int(facing[before] if facing[before] >= 0 else mesh.elements[facing[after], 2])
+
+
+def _across_bonds(solved: Solved) -> IntArray:
+    """Element (m,) to which each one is bonded, else -1."""
+    across = np.full(len(solved.mesh.elements), -1)
+    for facing in (solved.mesh.facing[name] for name in solved.body.problem.bonded):
+        own = np.flatnonzero(facing >= 0)
+        across[own], across[facing[own]] = facing[own], own
+    return across
+
+
+def _material_of(solved: Solved, element: int) -> Material:
+    """Material of the body of an element."""
+    return solved.body.problem.parts[solved.body.part_of(element)].material
 
 
 def _wedge_at(solved: Solved, answer: CaseAnswer, after: int) -> tuple[ElasticWedge, tuple[complex, complex]]:
@@ -299,8 +333,7 @@ def _wedge_at(solved: Solved, answer: CaseAnswer, after: int) -> tuple[ElasticWe
     faces = _face(answer, after, start), _face(answer, before, end)
     angle = float(np.mod(end + np.pi - start, 2 * np.pi))
     loads = complex(*answer.traction[after, 0]), complex(*answer.traction[before, 2])
-    material = problem.parts[solved.body.part_of(after)].material
-    return (start, angle, faces, material.effective_poisson_ratio), loads
+    return (start, angle, faces, _material_of(solved, after).effective_poisson_ratio), loads
 
 
 def _face(answer: CaseAnswer, element: int, direction: float) -> Face:

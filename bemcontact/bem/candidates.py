@@ -13,6 +13,7 @@ from bemcontact.bem.mesh import Mesh, runs
 from bemcontact.bem.outline import Outline
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problems.body_surface import AnySurface, BodySurface
+from bemcontact.problems.curves import cross
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import DeflectedContour
 from bemcontact.problems.surface_lines import Faces
@@ -43,13 +44,14 @@ def contact_points(
     of_zone, element = np.nonzero(in_zones)
     has[of_zone[:, None], mesh.elements[element]] = True
     choice = has.sum(axis=0) > 1
-    middles, tied = mesh.elements[:, 1], _tied(problem, mesh)
+    middles, tied, kinds = mesh.elements[:, 1], _tied(problem, mesh), _kinds(problem, mesh)
     for number, (name, zone) in enumerate(problem.zones.items()):
         in_zone, faces = in_zones[number], _faces(outline, zone.surface, deflections.get(name))
         other = isinstance(zone.surface, BodySurface) and zone.surface.elastic
         across = _across(mesh, mesh.facing.get(name))
         apart = across.min(axis=0) >= 0
-        apart[apart] = tied[across[0, apart]] != tied[across[1, apart]]
+        one, two = across[:, apart]
+        apart[apart] = (tied[one] != tied[two]) | (kinds[one] != kinds[two])
         for elements, closed in _between(mesh, runs(mesh, in_zone), faces.differs[:, 0] | apart):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
             gap, normals, lies = faces.along(nodes, closed=closed)
@@ -78,7 +80,17 @@ def contact_points(
             raise ProblemError(Issue(path=("contact_zones", name, "edges"), message=message))
         pieces += _standing(mesh, number, tool_of.get(name), in_zone, faces, across, values.displacement_given, tied)
     facing = {number: mesh.facing[name] for number, name in enumerate(problem.zones) if name in mesh.facing}
-    return replace(_joined(mesh, pieces, tied), facing=facing)
+    return replace(_joined(mesh, pieces, tied, kinds), facing=facing)
+
+
+def _kinds(problem: Problem, mesh: Mesh) -> IntArray:
+    """Number of the material and the heat at each node (N,): stress jumps where a bond joins bodies of other ones."""
+    heats = zip(*([loads.temperature for loads in each] for each in problem.volume_loads), strict=True)
+    of_parts = [(part.material, heat) for part, heat in zip(problem.parts, heats, strict=True)]
+    kinds = np.zeros(len(mesh.nodes), int)
+    for part, kind in zip(mesh.parts, of_parts, strict=True):
+        kinds[part.nodes] = of_parts.index(kind)
+    return kinds
 
 
 def _tied(problem: Problem, mesh: Mesh) -> IntArray:
@@ -224,8 +236,12 @@ class _Piece(NamedTuple):
     held: HeldNodes | None
 
 
-def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray) -> ContactPoints:
-    """Join all runs, and find the (element, local node) pairs of every point."""
+def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray, kinds: IntArray) -> ContactPoints:
+    """Join all runs, and find the (element, local node) pairs of every point.
+
+    Pressure jumps at a node where a bond joins bodies of other `kinds` (N,). It is no contact point: on either side it
+    has the pressure of the middle node beside it.
+    """
     sizes = [len(piece.nodes) for piece in pieces]
     node, normals, gap, opposite = (
         np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("nodes", "normals", "gap", "opposite")
@@ -233,6 +249,10 @@ def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray) -> ContactPoints:
     tool = [piece.tool for piece, size in zip(pieces, sizes, strict=True) for _ in range(size)]
     sides = np.column_stack([tied[node], np.where(opposite >= 0, tied[opposite], -1)])
     first_alike = _first_alike(mesh, sides, normals, gap, tool)
+    of_sides = np.column_stack([kinds[node], np.where(opposite >= 0, kinds[opposite], -1)])
+    jumps = _jumps(sides, of_sides, normals, tool)
+    jumps |= (first_alike >= 0) & jumps[first_alike]
+    first_alike[jumps] = -1
     own = first_alike == np.arange(len(node))
     sense = np.where(np.sum(normals * normals[first_alike], axis=1) < 0, -1.0, 1.0)
     number = np.where(first_alike < 0, -1, (np.cumsum(own) - 1)[first_alike])
@@ -241,13 +261,16 @@ def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray) -> ContactPoints:
     held_points = np.array([piece.held_points for piece in pieces])
     for row, (first, piece) in enumerate(zip(np.cumsum([0, *sizes]), pieces, strict=False)):
         for end, i in enumerate((0, len(piece.nodes) - 1) if len(piece.nodes) else ()):
-            if first_alike[first + i] not in (-1, first + i):  # a point of another zone, up to which contact goes on
+            shared = first_alike[first + i] not in (-1, first + i)  # is a point of another zone
+            if shared or jumps[first + i]:  # contact goes on up to there
                 held_arc[row, end], held_points[row, end] = piece.arc[i], mesh.nodes[piece.nodes[i]]
         point_of = np.full(len(mesh.nodes), -1)
         point_of[piece.nodes] = number[first : first + len(piece.nodes)]
         sense_of = np.ones(len(mesh.nodes))
         sense_of[piece.nodes] = sense[first : first + len(piece.nodes)]
         carrier, signs = point_of[mesh.elements[piece.elements]], sense_of[mesh.elements[piece.elements]]
+        at_jump = np.isin(mesh.elements[piece.elements], piece.nodes[jumps[first : first + len(piece.nodes)]])
+        carrier, signs = (np.where(at_jump, values[:, [1]], values) for values in (carrier, signs))
         beyond = piece.bonded | piece.goes_on
         for goes_on, element, end in zip(beyond.tolist(), (0, -1), (0, 2), strict=True):
             if goes_on:
@@ -304,6 +327,20 @@ def _first_alike(mesh: Mesh, sides: IntArray, normals: Array, gap: Array, tool: 
         else:
             first[j] = -1
     return first
+
+
+def _jumps(sides: IntArray, kinds: IntArray, normals: Array, tool: Sequence[str | None]) -> BoolArray:
+    """Whether points (n,) move with others where a body on one of both sides (n, 2) is of another kind (n, 2).
+
+    Common normals with bodies of other moduli are not quite the same.
+    """
+    order, jumps = np.argsort(sides, axis=1), np.zeros(len(sides), bool)
+    sides, kinds = (np.take_along_axis(values, order, axis=1) for values in (sides, kinds))
+    place = np.unique(sides, axis=0, return_inverse=True)[1].reshape(-1)
+    for j in np.flatnonzero(np.bincount(place)[place] > 1).tolist():
+        others = np.flatnonzero((place == place[j]) & (kinds != kinds[j]).any(axis=1))
+        jumps[j] = any(tool[i] == tool[j] and abs(cross(normals[i], normals[j])) < SMOOTH for i in others.tolist())
+    return jumps
 
 
 def _nodes_along(mesh: Mesh, halves: Array, elements: IntArray, *, closed: bool) -> tuple[IntArray, Array]:

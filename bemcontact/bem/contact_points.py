@@ -60,6 +60,8 @@ class ContactPoints:
     of a complementarity problem with one solution. The traction of the bond is another one, on its own elements: beside
     a debond it is infinite, with shear alone if the debond is closed.
 
+    So it is where bonded bodies of other materials or heat touch a third one side by side: pressure jumps there.
+
     Parameters
     ----------
     mesh : Mesh

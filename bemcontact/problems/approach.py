@@ -52,23 +52,33 @@ def approach(edges: Sequence[Edge], surface: BodySurface) -> Point:
     return (float(moved[0]), float(moved[1])) if touches else (0.0, 0.0)
 
 
-def approached(zones: Mapping[str, BodyZone]) -> dict[str, BodyZone]:
-    """Zones of bodies that touch other elastic ones, moved there as drawn."""
-    touching = {name: zone.surface for name, zone in zones.items() if zone.surface.first}
-    ways: dict[str, Way] = {}
-    for signs in moved_together(touching):
+def approached(zones: Mapping[str, BodyZone], bonded: Mapping[str, str] | None = None) -> dict[str, BodyZone]:
+    """Zones of bodies that touch other elastic ones, moved there as drawn; `bonded` as of `moved_together`.
+
+    Those that move together have common normals by one share, so that pairs on either side of a bond do not cross.
+    """
+    touching, found = {name: zone.surface for name, zone in zones.items() if zone.surface.first}, {**zones}
+    for signs in moved_together(touching, bonded or {}):
+        surfaces = [touching[name] if sign > 0 else touching[name].other_side for name, sign in signs.items()]
         pairs = [_sides(touching[name])[:: int(sign)] for name, sign in signs.items()]
-        first, second = (tuple(dict.fromkeys(edge for pair in pairs for edge in pair[i])) for i in (0, 1))
-        x, y = approach(first, replace(touching[next(iter(signs))], edges=second, nearest={}))
-        ways |= {name: Way(sign * x, sign * y) for name, sign in signs.items()}
-    return {name: zone.after(ways[name]) if name in ways else zone for name, zone in zones.items()}
+        first = tuple(dict.fromkeys(edge for pair in pairs for edge in pair[0]))
+        names = {edge.name for pair in pairs for edge in pair[1]}
+        loops = tuple({loop[0].name: loop for surface in surfaces for loop in surface.loops}.values())
+        second = tuple(edge for loop in loops for edge in loop if edge.name in names)
+        x, y = approach(first, replace(surfaces[0], edges=second, loops=loops, nearest={}))
+        shares = [touching[name].share if sign > 0 else 1 - touching[name].share for name, sign in signs.items()]
+        for name, sign in signs.items():
+            share = touching[name].share if len({*shares}) == 1 else (1 - sign) / 2 + sign * np.mean(shares)
+            surface = replace(touching[name], share=float(share))
+            found[name] = replace(zones[name], surface=surface).after(Way(sign * x, sign * y))
+    return found
 
 
-def moved_together(surfaces: Mapping[str, BodySurface]) -> Iterator[dict[str, float]]:
+def moved_together(surfaces: Mapping[str, BodySurface], bonded: Mapping[str, str]) -> Iterator[dict[str, float]]:
     """Names of contacts between elastic bodies that are moved by one displacement, with its sign in each.
 
     What one contact states, several may state, each with some of the edges, whichever side is the first: so all that
-    meet on both bodies belong together.
+    meet on both bodies belong together. Bodies that bonds hold together are one: `bonded` has one of them for each.
     """
     left = dict.fromkeys(surfaces)
     while left:
@@ -78,7 +88,8 @@ def moved_together(surfaces: Mapping[str, BodySurface]) -> Iterator[dict[str, fl
                 for sign in (1.0, -1.0):
                     mine, its = _sides(surface)[:: int(sign)]
                     pairs = (_sides(surfaces[name])[:: int(other)] for name, other in signs.items())
-                    if more not in signs and any(_meet(mine, one) and _meet(its, two) for one, two in pairs):
+                    meet = any(_meet(mine, one, bonded) and _meet(its, two, bonded) for one, two in pairs)
+                    if more not in signs and meet:
                         signs[more] = sign
         for name in signs:
             left.pop(name, None)
@@ -90,11 +101,16 @@ def _sides(surface: BodySurface) -> tuple[tuple[Edge, ...], tuple[Edge, ...]]:
     return surface.first, surface.edges
 
 
-def _meet(edges: Sequence[Edge], others: Sequence[Edge]) -> bool:
-    """Whether edges and others have one in common, or go on in one another, on one body."""
+def _meet(edges: Sequence[Edge], others: Sequence[Edge], bonded: Mapping[str, str]) -> bool:
+    """Whether edges and others have one in common, or go on in one another, on one body or on bonded ones."""
+
+    def body(edge: Edge) -> str:
+        name = edge.name.partition(SEPARATOR)[0]
+        return bonded.get(name, name)
+
     return any(
         one.name == other.name
-        or (one.name.partition(SEPARATOR)[0] == other.name.partition(SEPARATOR)[0] and one.end == other.start)
+        or (body(one) == body(other) and np.hypot(*np.subtract(one.end, other.start)) <= FLUSH * one.length)
         for first, second in ((edges, others), (others, edges))
         for one in first
         for other in second

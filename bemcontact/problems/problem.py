@@ -119,11 +119,10 @@ class Problem(StatedBodies):
     )
     root: ClassVar[bool] = True
     inside: ClassVar[tuple[str, ...]] = (
-        "adapts", "after_motions", "asked_accuracy", "bonded_edges", "bonds", "boundary_of", "condition_path",
-        "edge_conditions", "edges_of", "factors", "is_elastic", "load_stops", "loops", "on_mesh_of", "on_contacts_of",
-        "opposite", "opposite_edges", "part_of", "parts", "reach_of", "several", "sides_of", "to_be_meshed",
-        "tool_action",
-        "touching_bodies", "touching_parts", "volume_loads", "without_joints", "zones",
+        "adapts", "after_motions", "asked_accuracy", "bonded_edges", "bonded_groups", "bonds", "boundary_of",
+        "condition_path", "edge_conditions", "edges_of", "factors", "is_elastic", "load_stops", "loops", "on_mesh_of",
+        "on_contacts_of", "opposite", "opposite_edges", "part_of", "parts", "reach_of", "several", "sides_of",
+        "to_be_meshed", "tool_action", "touching_bodies", "touching_parts", "volume_loads", "without_joints", "zones",
     )  # fmt: skip
     other_words: ClassVar[Mapping[str, str]] = {
         "body": "bodies has several bodies by name; an only one has material and boundary at the top level",

@@ -203,8 +203,17 @@ class StatedBodies(SpecModel, Drawn):
         if self.contacts and not self._zones:
             self._zones.update(self.contact_zones)
             of_contacts = {name: self._zone_of(item.between, item.gap) for name, item in self.contacts.items()}
-            self._zones.update(approached(of_contacts))
+            self._zones.update(approached(of_contacts, self.bonded_groups))
         return self._zones or self.contact_zones
+
+    @property
+    def bonded_groups(self) -> dict[str, str]:
+        """For each body that bonds join to others, directly or through others, the same one of these."""
+        groups = dict[str, str]()
+        for sides in self.bonded.values():
+            one, two = (groups.setdefault(body, body) for body in map(_body_in, sides))
+            groups = {body: one if group == two else group for body, group in groups.items()}
+        return groups
 
     @property
     def bonds(self) -> Mapping[str, BodyZone]:
