@@ -28,6 +28,7 @@ from bemcontact.problems.boundary import Boundary, in_box
 from bemcontact.problems.conditions import Condition, Loads
 from bemcontact.problems.contact_zone import ContactZone
 from bemcontact.problems.curves import CircularArc, Edge
+from bemcontact.problems.edge_places import rests_on_flat
 from bemcontact.problems.load_case import LoadCase
 from bemcontact.problems.material import Material
 from bemcontact.problems.pairing import OppositePart, opposite_parts
@@ -236,11 +237,13 @@ class StatedBodies(SpecModel, Drawn):
         if elastic:
             own = tuple(edge for edge in self.edges if edge.name in edges)
             share = self._share_of_first(_body_in(first), body)
+            flat = [rests_on_flat(touched, own), rests_on_flat(own, touched)]
+            share = float(flat[0]) if flat[0] != flat[1] else share
             surface = replace(surface, share=share, first=own, first_loops=own_loops)
         return BodyZone(edges=edges, surface=surface)
 
     def _share_of_first(self, first: str, second: str) -> float:
-        """Part that the first of two elastic bodies has in common normals.
+        """Part that the first of two elastic bodies has in common normals, unless a flat side lies on another one.
 
         A body that may spin has some part of them: else no slope would hold it along a plane that is much stiffer.
         """

@@ -40,6 +40,47 @@ def stack(counts, exchanged=False, x=(0, 3)):
     return bodies, contacts
 
 
+def filleted(slide, exchanged, *, above=500.0):
+    """A block with round edges that is pressed on a longer one, and slid along it."""
+    low = polygon(bottom=(-9, -3), right=(9, -3), top=(9, 0), left=(-9, 0))
+    up = polygon(bottom=(-3, 0), right=(3, 0), top=(3, 3), left=(-3, 3))
+    (bottom, *sides), rounded = up["outer"], ({"name": f"fillet {i}", "fillet": 0.4} for i in (1, 2))
+    outer = [bottom, next(rounded), *sides, next(rounded)]
+    bodies = {
+        "up": elastic({"outer": outer}, {"top": {"displacement": {"x": slide, "y": -0.01}}}, above),
+        "low": elastic(low, HELD),
+    }
+    return problem(bodies, 0.05, c=["low", "up"] if exchanged else ["up", "low"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("exchanged", [False, True])
+def test_what_slides_along_a_flat_side_presses_as_before(exchanged):
+    """A slide changes no gap to a flat side, also not under round edges: the same equations, but for the slide itself.
+
+    The slide is longer than contact reaches around the round edges.
+    """
+    still, slid = (bemcontact.solve(filleted(slide, exchanged)) for slide in (0.0, 0.03))
+    assert slid.certified
+    assert len(slid.pressure) == len(still.pressure)
+    assert np.abs(slid.pressure - still.pressure).max() <= 1e-9 * still.pressure.max()
+    assert not any("against each other" in note for note in slid.notes)
+
+
+@pytest.mark.parametrize("push", [0.0, 1e-3])
+def test_nothing_holds_a_block_with_round_edges_along_a_flat_side(push):
+    """Statics: no pressure on a flat side resists a push along it, however far contact reaches around the edges."""
+    blocks = filleted(0.0, exchanged=False)
+    loads = {"bodies.up.conditions": {"top": {"traction": {"x": push, "y": -1.0}}}}
+    if push:
+        with pytest.raises(bemcontact.ProblemError, match="translation"):
+            bemcontact.solve(blocks.with_values(loads))
+    else:
+        result = bemcontact.solve(blocks.with_values(loads))
+        assert result.certified
+        assert any("is held at zero" in note for note in result.notes)
+
+
 @pytest.mark.parametrize("exchanged", [False, True])
 @pytest.mark.parametrize("number", [2, 4])
 def test_patch_of_blocks_with_unequal_meshes(number, exchanged):
