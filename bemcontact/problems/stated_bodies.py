@@ -1,6 +1,6 @@
 """Bodies, conditions and contacts as a problem states them, and what follows for all elastic bodies together."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Self
 
@@ -44,6 +44,8 @@ REACH = 0.03
 
 SAME_CIRCLE = 1e-9
 """Distance of two centers over the radius up to which they are equal."""
+SAME_PART = 1e-6
+"""Fraction of an edge by which two parts of it may overlap and only meet."""
 LEAST_SHARE = 0.05
 """Least part that a body that may spin has in common normals."""
 
@@ -350,14 +352,38 @@ class StatedBodies(SpecModel, Drawn):
         return {*self.edge_conditions, *bonded}.union(*(case.conditions for case in self.load_cases.values()))
 
     def reach_of(self, contact: str) -> float:
-        """Gap beside the nearest place [L] up to which a body may meet another one; infinite for stated edges of it."""
+        """Gap beside the nearest place [L] up to which a body may meet another one; infinite for stated edges of it.
+
+        Not where these would reach so far that other edges are opposite to the same part of the second body.
+        """
         if contact not in self.contacts:
             return np.inf
         first, second = self.contacts[contact].between
-        if SEPARATOR in (first if self.is_elastic(_body_in(first)) else second)[0]:
+        if SEPARATOR in (first if self.is_elastic(_body_in(first)) else second)[0] and not self._crowded(contact):
             return np.inf
         originals = (self.bodies[body].copy_of or body for body in self.sides_of(contact))  # a box depends on the turn
         return REACH * min(self.boundary_of(body).size for body in originals)
+
+    def _crowded(self, contact: str) -> bool:
+        """Whether edges of a contact are opposite to a part of the second body to which edges of others are, too."""
+        own = [*self._seen(contact)]
+        others = [part for name in self.contacts if name != contact for part in self._seen(name)]
+        return any(
+            onto == theirs and edge != other and low < end - SAME_PART and start < high - SAME_PART
+            for edge, onto, low, high in own
+            for other, theirs, start, end in others
+        )
+
+    def _seen(self, contact: str) -> Iterator[tuple[str, str, float, float]]:
+        """Parts that are opposite to another elastic body at any distance: edges of both, fractions of the second."""
+        surface = self.zones[contact].surface
+        if not (isinstance(surface, BodySurface) and surface.elastic):
+            return
+        for part in opposite_parts([self.edge(name) for name in self.edges_of(contact)], surface):
+            edge, onto = self.edge(part.edge), surface.edges[part.onto]
+            at = np.array([part.low, part.high])
+            low, high = sorted(onto.curve.nearest(surface.pairs(edge.points(at), -edge.normals(at)).points).tolist())
+            yield part.edge, onto.name, low, high
 
     def opposite(self, contact: str) -> tuple[OppositePart, ...]:
         """Parts of the edges of the first body that are opposite to the second one of a contact, or of a bond."""

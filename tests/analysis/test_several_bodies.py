@@ -877,6 +877,30 @@ def test_one_contact_is_two_with_the_parts_of_its_edge(turned):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("named", [False, True])
+@pytest.mark.parametrize("exchanged", [False, True])
+def test_rollers_between_plates_that_bend_slide_by_an_amount_that_is_not_known(exchanged, named):
+    """No load drives them, and slopes by far less than friction: pressures hold, and balance the load."""
+    rim = {"name": "rim", "kind": "arc", "center": [-24, 16], "radius": 16, "angles": [-90, 270]}
+    below, above = (block((-60, 64), y) for y in ((-26, 0), (32, 56)))
+    bodies = {
+        "base": elastic(below, {"bottom": {"displacement": {"y": 0}}, **GUIDED}, 2600.0),
+        "r1": elastic({"outer": [rim]}, modulus=26000.0),
+        "r2": {"copy_of": "r1", "shift": [48, 0]},
+        "upper": elastic(above, {"top": {"pressure": 0.1}, **GUIDED}, 2600.0),
+    }
+    sides = [(roller, plate) for roller in ("r1", "r2") for plate in ("base/top", "upper/bottom")]
+    pairs = [[f"{r}/rim", plate] if named else [r, plate.partition("/")[0]] for r, plate in sides]
+    contacts = {f"c{i}": pair[::-1] if exchanged else pair for i, pair in enumerate(pairs)}
+    result = solved(bodies, 0.05, **contacts)
+    assert result.certified
+    assert sum("a little friction holds it" in note for note in result.notes) == 1
+    forces = np.abs([result.footprint.forces[f"c{i}"][1] for i in range(4)])
+    assert np.allclose(forces[::2], forces[1::2], rtol=1e-6)
+    assert forces[0] + forces[2] == pytest.approx(0.1 * 124, rel=1e-6)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("turned", [{}, {"c": ["w/t1", "d/under"]}])
 def test_a_disk_holds_on_a_line_of_two_edges(turned):
     """It slides past the joint, where the surface of neither contact ends for it: the line goes on."""
