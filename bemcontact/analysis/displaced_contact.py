@@ -54,9 +54,13 @@ def displaced(
         face, along = points.faces[own], np.sum(there.normals * contact.normals[own], axis=-1)
         ridge = (np.hypot(*(face - contact.normals[own]).T) > ALIKE) & (along > STEEP)
         other = ~ridge & (np.sum(there.normals * face, axis=-1) < SAME_FACE)
-        beyond = there.gap / np.where(ridge, along, 1.0) - linear[own]
-        other_body = points.opposite.node[own]
+        other_body, surface, distance = points.opposite.node[own], gaps.surfaces[zone], there.gap
         across = _at_nodes(gaps, points)[other_body]
+        elastic = isinstance(surface, BodySurface) and surface.elastic
+        if elastic and solution.pressure[own].any():
+            carried = _carried_along(gaps, zone, points, contact, solution.pressure, displacement[own] - across)
+            distance = np.where(other, there.gap, carried)
+        beyond = distance / np.where(ridge, along, 1.0) - linear[own]
         found.motion[own] -= np.where((other_body < 0)[:, None], gaps.tool_motion(zone, at[own]), across)
         tip = gaps.beside_groove(zone, at[own], np.hypot(*found.motion[own].T))
         grooved = (beyond < 0) & (tip | (other & isinstance(gaps.surfaces[zone], Polyline)))
@@ -66,14 +70,44 @@ def displaced(
         found.turn[own] = np.where((other | tip)[:, None], 0.0, turned - face)
         found.change[own] = np.where(grooved, 0.0, beyond)
         found.distance[own], found.other[own] = there.gap, other
-        surface = gaps.surfaces[zone]
-        if isinstance(surface, BodySurface) and surface.elastic:
+        if elastic:
             sure, pressed = own.copy(), contact.pressed(solution.pressure, solution.displacement)
             sure[own] = ~tip
             _see_from_other_side(gaps, zone, points, own, sure, pressed, linear, found)
     at_tip = _at_tip_of_bond(points, found.motion)
     found.change[at_tip], found.turn[at_tip], found.other[at_tip] = 0.0, 0.0, False
     return found
+
+
+def _carried_along(
+    gaps: SurfaceGaps, zone: str, points: ContactPoints, contact: CondensedContact, pressure: Array, against: Array
+) -> Array:
+    """Distance (k,) [L] of the points of a zone from the second elastic body, after displacements (k, 2) against it.
+
+    Pressure slides along on that body and takes its deformation along. So each point has the displacement of its pair,
+    not that of the place where it comes to, which may be beside all pressure. It only goes up or down the slope that
+    the body has under an unbroken contact as a whole.
+    """
+    own = np.flatnonzero(contact.zone == contact.zone_names.index(zone))
+    surface, force = gaps.surfaces[zone], (contact.weights * pressure)[own]
+    assert isinstance(surface, BodySurface)
+    at, pairs = contact.points[own], points.mesh.nodes[points.opposite.node[own]]
+    if surface.share == 1:  # the first side is flat: seen from the other one, a slide along it changes nothing
+        surface, at, pairs, against = surface.other_side, pairs, at, -against
+    places, normals = at + against, surface.closest(pairs).normals
+    turn, distance = gaps.turn_of(surface, pairs, normals), surface.continued.closest(places).gap
+    for beside in _around_contacts(contact.run[own], force > 0):
+        distance[beside] += (places - pairs)[beside] @ (force[beside] @ turn[beside] / force[beside].sum())
+    return distance
+
+
+def _around_contacts(run: IntArray, pressed: BoolArray) -> Iterator[IntArray]:
+    """Points of each unbroken contact, with the open ones that are nearer to it in their run than to another one."""
+    for number in np.unique(run[pressed]).tolist():
+        at = np.flatnonzero(run == number)
+        inside = np.flatnonzero(pressed[at])
+        starts = np.flatnonzero(np.diff(inside) > 1)
+        yield from np.split(at, (inside[starts] + inside[starts + 1] + 1) // 2)
 
 
 def _at_tip_of_bond(points: ContactPoints, motion: Array) -> BoolArray:

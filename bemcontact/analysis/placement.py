@@ -99,9 +99,10 @@ def placement(
         return None, overhangs
     there = {"initial_gap": contact.initial_gap + moved.change, "motion_load": contact.motion_load + load}
     again = complementarity.solve(replace(contact, **there), near=pressed)
-    misfit, turned = _moves_on(gaps, points, contact, solution, again, moved), ()
+    misfit, turned = _moves_on(gaps, points, contact, solution, again, moved)
     if misfit is None and nearby is None:
-        misfit, turned = _forces_changed(gaps, points, contact, solution, again, moved)
+        misfit, changed = _forces_changed(gaps, points, contact, solution, again, moved)
+        turned = (*turned, *changed)
     if misfit is not None:
         return misfit, (*overhangs, *turned)
     finite = [name for name in contact.zone_names if name not in infinite]
@@ -290,16 +291,17 @@ def _changed(
 def _moves_on(
     gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution,
     again: ContactSolution, moved: Displaced,
-) -> Penetration | None:  # fmt: skip
+) -> tuple[Penetration | None, tuple[str, ...]]:  # fmt: skip
     """Find a free motion that goes on by as much again where the body has moved to: nothing holds it.
 
     A flat block slides on a round support, whose normals are tilted beside the place where it touches. It would move
     until the tilt balances the load, but takes the place of contact with it. So does a disc that a couple rolls along
     a plane: it would turn until the lever of the pressure balances the couple. A motion that no load drives, and
-    that is small beside every contact, may be noise of the mesh, and places nothing elsewhere.
+    that is small beside every contact, may be noise of the mesh, and places nothing elsewhere. Nor does a motion that
+    slopes drive by a small part of the forces, as that of a roller between bodies that bend: it is noted.
     """
     if again.status is not Status.SOLVED or not contact.free_motions:
-        return None
+        return None, ()
     reach = abs(contact.rigid_motions).max(axis=0)
     before = solution.rigid_amplitudes * reach
     unseen = _unheld(contact, solution)  # their amplitudes are a rule's
@@ -315,8 +317,16 @@ def _moves_on(
     noise = (before + further < slight * reach) & (contact.motion_load == 0)
     held = (further < np.maximum(MOVES_ON * before, least)) | noise
     if held.all():
-        return None
-    j = int(np.argmax(np.where(held, 0.0, further)))
+        return None, ()
+    j, part = int(np.argmax(np.where(held, 0.0, further))), _push_of_slopes(contact, solution)
+    slight_push = part < noted(gaps.problem)
+    if (held | slight_push).all():
+        words = (
+            f"no contact holds the {contact.motion_names[j]}, and no load drives it: slopes push along it by "
+            f"{100 * part[j]:.2g} % of the force of contact; its amount is not known, and a little friction holds it"
+        )
+        return None, (words,)
+    j = int(np.argmax(np.where(held | slight_push, 0.0, further)))
     i = int(np.argmax(contact.weights * solution.pressure * abs(contact.rigid_motions[:, j])))
     unit = gaps.problem.units.length
     words = (
@@ -324,7 +334,15 @@ def _moves_on(
         f"hold it, and they move with the body. Along this motion contact moves by {_length(before[j], unit)}, and "
         f"from there on by {_length(further[j], unit)}. Prescribe a displacement that holds the body in this direction."
     )
-    return _misfit(gaps, points, contact, i, Misfit.MOVED, float(further[j]), float(least), words)
+    return _misfit(gaps, points, contact, i, Misfit.MOVED, float(further[j]), float(least), words), ()
+
+
+def _push_of_slopes(contact: CondensedContact, solution: ContactSolution) -> Array:
+    """Largest part (k,) of the force of a zone that acts along each free motion; infinite for those with a load."""
+    work = abs((contact.weights_by_zone * solution.pressure) @ contact.rigid_motions)
+    force = (contact.lengths_by_zone @ solution.pressure)[:, None] * abs(contact.rigid_motions).max(axis=0)
+    part = np.divide(work, force, out=np.zeros_like(work), where=force > 0).max(axis=0)
+    return np.where(contact.motion_load == 0, part, np.inf)
 
 
 def _forces_changed(

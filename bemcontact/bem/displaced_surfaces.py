@@ -68,7 +68,7 @@ class DisplacedSurfaces:
         motion = self._motion_of_body(first, moved)
         places = moved - self._motion_of_body(first, moved - motion)
         gap, normals = first.closest(places)
-        return Closest(gap, -(normals + self._turn_of(first, places, normals)))
+        return Closest(gap, -(normals + self.turn_of(first, places, normals)))
 
     def undeformed(self, zone: str, points: Array) -> Closest:
         """Distance (...) [L] of points (..., 2) from the undisplaced surface, and the normals there."""
@@ -100,7 +100,7 @@ class DisplacedSurfaces:
         surface = self.surfaces[zone]
         if not (isinstance(surface, BodySurface) and surface.elastic):
             return np.zeros_like(normals)
-        return self._turn_of(surface, points, normals)
+        return self.turn_of(surface, points, normals)
 
     def _motion_of_body(self, surface: BodySurface, points: Array, inward: Array | None = None) -> Array:
         """Displacement (..., 2) [L] of an elastic body at places opposite to points (..., 2)."""
@@ -110,7 +110,7 @@ class DisplacedSurfaces:
         values = np.einsum("ki,kix->kx", reference_element.values(xi), self.state.displacement[element])
         return values.reshape(points.shape)
 
-    def _turn_of(self, surface: BodySurface, points: Array, normals: Array) -> Array:
+    def turn_of(self, surface: BodySurface, points: Array, normals: Array) -> Array:
         """Change (k, 2) of normals (k, 2) of an elastic body at points (k, 2) [L]."""
         feet = surface.feet(points)
         element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)

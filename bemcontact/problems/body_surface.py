@@ -98,7 +98,8 @@ class BodySurface:
     edges : that may be touched, with their names in the problem
     loops : all loops of the body
     offset : what is added to the gap as drawn [L]
-    share : part that the first side has in common normals: its modulus E / (1 - ν²) over the sum of both
+    share : part that the first side has in common normals: its modulus E / (1 - ν²) over the sum of both; 1 or 0 where
+        a body with round edges lies on the flat first or second side, along which it may slide
     first : edges of the first side where it has such a part
     first_loops : all loops of that body
     approach : motion of this body that makes it touch them; pairs, or the faces of a rigid body, are those after it

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
-from bemcontact.problems.curves import Edge, cross
+from bemcontact.problems.curves import Edge, Segment, cross
 
 STEEPEST = 0.5
 """Cosine of the angle between two boundaries from which they may form pairs: small displacements close no wider one."""
@@ -25,6 +25,8 @@ AHEAD = 1e-5
 MET = 1e-12
 """Distance of a point from the normal of its pair, over the length of the edge or a coordinate, that is round-off."""
 
+FLUSH = 1e-9
+"""Distance over the length of a straight edge by which others are ahead of it if that is round-off."""
 AT_ENDS = 1e-12
 """Distance from both ends of an edge, over its length, of the places that are taken for them: they have its normal."""
 PARTS = 8
@@ -79,6 +81,29 @@ def curvatures(edges: Sequence[Edge], places: EdgePlaces) -> Array:
         at, ahead = places.fraction[on], np.where(places.fraction[on] > 0.5, -AHEAD, AHEAD)
         found[on] = (curve.tangent_angle(at + ahead) - curve.tangent_angle(at)) / (ahead * curve.length)
     return found
+
+
+def rests_on_flat(edges: Sequence[Edge], others: Sequence[Edge]) -> bool:
+    """Whether a straight edge is what is first to touch others, and all others that face these edges are parallel."""
+    own = places_along(edges)
+    for edge in edges:
+        if not isinstance(edge.curve, Segment):
+            continue
+        frame = np.stack([edge.directions(np.array([0.5]))[0], edge.normals(np.array([0.5]))[0]])
+        along, ahead = frame @ own.points[own.normals @ frame[1] > STEEPEST].T
+        if ahead.max() - frame[1] @ edge.start > FLUSH * edge.length:
+            continue
+        facing = list[bool]()
+        for other in others:
+            places = places_along((other,))
+            at, turned = places.points @ frame[0], places.normals @ frame[1] < -STEEPEST
+            if turned.any() and at.max() > along.min() and at.min() < along.max():
+                facing.append(
+                    isinstance(other.curve, Segment) and bool(abs(cross(frame[1], places.normals[0])) <= CORNER)
+                )
+        if facing and all(facing):
+            return True
+    return False
 
 
 class NormalWeight(NamedTuple):

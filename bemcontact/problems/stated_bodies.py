@@ -1,6 +1,6 @@
 """Bodies, conditions and contacts as a problem states them, and what follows for all elastic bodies together."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Self
 
@@ -28,6 +28,7 @@ from bemcontact.problems.boundary import Boundary, in_box
 from bemcontact.problems.conditions import Condition, Loads
 from bemcontact.problems.contact_zone import ContactZone
 from bemcontact.problems.curves import CircularArc, Edge
+from bemcontact.problems.edge_places import rests_on_flat
 from bemcontact.problems.load_case import LoadCase
 from bemcontact.problems.material import Material
 from bemcontact.problems.pairing import OppositePart, opposite_parts
@@ -43,6 +44,8 @@ REACH = 0.03
 
 SAME_CIRCLE = 1e-9
 """Distance of two centers over the radius up to which they are equal."""
+SAME_PART = 1e-6
+"""Fraction of an edge by which two parts of it may overlap and only meet."""
 LEAST_SHARE = 0.05
 """Least part that a body that may spin has in common normals."""
 
@@ -245,11 +248,13 @@ class StatedBodies(SpecModel, Drawn):
         if elastic:
             own = tuple(edge for edge in self.edges if edge.name in edges)
             share = self._share_of_first(_body_in(first), body)
+            flat = [rests_on_flat(touched, own), rests_on_flat(own, touched)]
+            share = float(flat[0]) if flat[0] != flat[1] else share
             surface = replace(surface, share=share, first=own, first_loops=own_loops)
         return BodyZone(edges=edges, surface=surface)
 
     def _share_of_first(self, first: str, second: str) -> float:
-        """Part that the first of two elastic bodies has in common normals.
+        """Part that the first of two elastic bodies has in common normals, unless a flat side lies on another one.
 
         A body that may spin has some part of them: else no slope would hold it along a plane that is much stiffer.
         """
@@ -356,14 +361,38 @@ class StatedBodies(SpecModel, Drawn):
         return {*self.edge_conditions, *bonded}.union(*(case.conditions for case in self.load_cases.values()))
 
     def reach_of(self, contact: str) -> float:
-        """Gap beside the nearest place [L] up to which a body may meet another one; infinite for stated edges of it."""
+        """Gap beside the nearest place [L] up to which a body may meet another one; infinite for stated edges of it.
+
+        Not where these would reach so far that other edges are opposite to the same part of the second body.
+        """
         if contact not in self.contacts:
             return np.inf
         first, second = self.contacts[contact].between
-        if SEPARATOR in (first if self.is_elastic(_body_in(first)) else second)[0]:
+        if SEPARATOR in (first if self.is_elastic(_body_in(first)) else second)[0] and not self._crowded(contact):
             return np.inf
         originals = (self.bodies[body].copy_of or body for body in self.sides_of(contact))  # a box depends on the turn
         return REACH * min(self.boundary_of(body).size for body in originals)
+
+    def _crowded(self, contact: str) -> bool:
+        """Whether edges of a contact are opposite to a part of the second body to which edges of others are, too."""
+        own = [*self._seen(contact)]
+        others = [part for name in self.contacts if name != contact for part in self._seen(name)]
+        return any(
+            onto == theirs and edge != other and low < end - SAME_PART and start < high - SAME_PART
+            for edge, onto, low, high in own
+            for other, theirs, start, end in others
+        )
+
+    def _seen(self, contact: str) -> Iterator[tuple[str, str, float, float]]:
+        """Parts that are opposite to another elastic body at any distance: edges of both, fractions of the second."""
+        surface = self.zones[contact].surface
+        if not (isinstance(surface, BodySurface) and surface.elastic):
+            return
+        for part in opposite_parts([self.edge(name) for name in self.edges_of(contact)], surface):
+            edge, onto = self.edge(part.edge), surface.edges[part.onto]
+            at = np.array([part.low, part.high])
+            low, high = sorted(onto.curve.nearest(surface.pairs(edge.points(at), -edge.normals(at)).points).tolist())
+            yield part.edge, onto.name, low, high
 
     def opposite(self, contact: str) -> tuple[OppositePart, ...]:
         """Parts of the edges of the first body that are opposite to the second one of a contact, or of a bond."""

@@ -40,6 +40,47 @@ def stack(counts, exchanged=False, x=(0, 3)):
     return bodies, contacts
 
 
+def filleted(slide, exchanged, *, above=500.0):
+    """A block with round edges that is pressed on a longer one, and slid along it."""
+    low = polygon(bottom=(-9, -3), right=(9, -3), top=(9, 0), left=(-9, 0))
+    up = polygon(bottom=(-3, 0), right=(3, 0), top=(3, 3), left=(-3, 3))
+    (bottom, *sides), rounded = up["outer"], ({"name": f"fillet {i}", "fillet": 0.4} for i in (1, 2))
+    outer = [bottom, next(rounded), *sides, next(rounded)]
+    bodies = {
+        "up": elastic({"outer": outer}, {"top": {"displacement": {"x": slide, "y": -0.01}}}, above),
+        "low": elastic(low, HELD),
+    }
+    return problem(bodies, 0.05, c=["low", "up"] if exchanged else ["up", "low"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("exchanged", [False, True])
+def test_what_slides_along_a_flat_side_presses_as_before(exchanged):
+    """A slide changes no gap to a flat side, also not under round edges: the same equations, but for the slide itself.
+
+    The slide is longer than contact reaches around the round edges.
+    """
+    still, slid = (bemcontact.solve(filleted(slide, exchanged)) for slide in (0.0, 0.03))
+    assert slid.certified
+    assert len(slid.pressure) == len(still.pressure)
+    assert np.abs(slid.pressure - still.pressure).max() <= 1e-9 * still.pressure.max()
+    assert not any("against each other" in note for note in slid.notes)
+
+
+@pytest.mark.parametrize("push", [0.0, 1e-3])
+def test_nothing_holds_a_block_with_round_edges_along_a_flat_side(push):
+    """Statics: no pressure on a flat side resists a push along it, however far contact reaches around the edges."""
+    blocks = filleted(0.0, exchanged=False)
+    loads = {"bodies.up.conditions": {"top": {"traction": {"x": push, "y": -1.0}}}}
+    if push:
+        with pytest.raises(bemcontact.ProblemError, match="translation"):
+            bemcontact.solve(blocks.with_values(loads))
+    else:
+        result = bemcontact.solve(blocks.with_values(loads))
+        assert result.certified
+        assert any("is held at zero" in note for note in result.notes)
+
+
 @pytest.mark.parametrize("exchanged", [False, True])
 @pytest.mark.parametrize("number", [2, 4])
 def test_patch_of_blocks_with_unequal_meshes(number, exchanged):
@@ -833,6 +874,30 @@ def test_one_contact_is_two_with_the_parts_of_its_edge(turned):
     np.testing.assert_allclose(
         signs @ [two.footprint.moments[name] for name in PARTS], one.footprint.moments["whole"], atol=1e-9
     )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("named", [False, True])
+@pytest.mark.parametrize("exchanged", [False, True])
+def test_rollers_between_plates_that_bend_slide_by_an_amount_that_is_not_known(exchanged, named):
+    """No load drives them, and slopes by far less than friction: pressures hold, and balance the load."""
+    rim = {"name": "rim", "kind": "arc", "center": [-24, 16], "radius": 16, "angles": [-90, 270]}
+    below, above = (block((-60, 64), y) for y in ((-26, 0), (32, 56)))
+    bodies = {
+        "base": elastic(below, {"bottom": {"displacement": {"y": 0}}, **GUIDED}, 2600.0),
+        "r1": elastic({"outer": [rim]}, modulus=26000.0),
+        "r2": {"copy_of": "r1", "shift": [48, 0]},
+        "upper": elastic(above, {"top": {"pressure": 0.1}, **GUIDED}, 2600.0),
+    }
+    sides = [(roller, plate) for roller in ("r1", "r2") for plate in ("base/top", "upper/bottom")]
+    pairs = [[f"{r}/rim", plate] if named else [r, plate.partition("/")[0]] for r, plate in sides]
+    contacts = {f"c{i}": pair[::-1] if exchanged else pair for i, pair in enumerate(pairs)}
+    result = solved(bodies, 0.05, **contacts)
+    assert result.certified
+    assert sum("a little friction holds it" in note for note in result.notes) == 1
+    forces = np.abs([result.footprint.forces[f"c{i}"][1] for i in range(4)])
+    assert np.allclose(forces[::2], forces[1::2], rtol=1e-6)
+    assert forces[0] + forces[2] == pytest.approx(0.1 * 124, rel=1e-6)
 
 
 @pytest.mark.slow

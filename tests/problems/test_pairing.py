@@ -22,6 +22,24 @@ def test_parts_end_where_the_other_edge_ends(x, low, high):
     assert (edge, begin, end) == ("up/bottom", pytest.approx(low, abs=1e-9), pytest.approx(high, abs=1e-9))
 
 
+def test_named_rims_beside_each_other_reach_as_far_as_whole_bodies():
+    """Pairs far up the rims, where both cannot touch the block, would be on one part of it."""
+    bodies = {
+        "r1": elastic({"outer": [{**circle("rim", 2.0), "center": [-3, 2]}]}),
+        "r2": elastic({"outer": [{**circle("rim", 2.0), "center": [3, 2]}]}),
+        "block": elastic(block((-9, 9), (-4, 0)), HELD, 100.0),
+    }
+    named, whole = (
+        problem(bodies, 0.01, c1=[f"r1{rim}", f"block{top}"], c2=[f"r2{rim}", f"block{top}"])
+        for rim, top in (("/rim", "/top"), ("", ""))
+    )
+    alone = problem({name: bodies[name] for name in ("r1", "block")}, 0.01, c1=["r1/rim", "block/top"])
+    for contact in ("c1", "c2"):
+        parts_of_both = [[part[:3] for part in stated.opposite(contact)] for stated in (named, whole)]
+        assert parts_of_both[0] == parts_of_both[1]
+    assert sum(part.high - part.low for part in alone.opposite("c1")) == pytest.approx(1 / 3, abs=1e-6)  # 60 degrees
+
+
 def test_a_slot_in_the_other_body_leaves_two_parts():
     legs = polygon(
         bottom=(0, -3), right=(4, -3), top=(4, 0), inner=(3, 0), floor=(3, -2), wall=(1, -2), **{"other top": (1, 0)},
