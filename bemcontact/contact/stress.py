@@ -35,7 +35,7 @@ class Labels:
 
 
 ROUND_OFF = 1e-12
-"""Part of the largest stress that is printed as zero."""
+"""Part of the largest stress, or of a coordinate, that is printed as zero."""
 PRINTED = 6
 """Most points of which stresses are printed."""
 
@@ -246,8 +246,10 @@ def _counted(count: int, noun: str) -> str:
 
 
 def _place(point: tuple[float, float], label: str) -> str:
-    """A place with its unit, if this is known."""
-    return f"({point[0]:.5g}, {point[1]:.5g}) {label}".rstrip()
+    """A place with its unit, if this is known; what is round-off beside the other coordinate is zero."""
+    far = max(map(abs, point))
+    x, y = (at if abs(at) > ROUND_OFF * far else 0.0 for at in point)
+    return f"({x:.5g}, {y:.5g}) {label}".rstrip()
 
 
 def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:

@@ -38,12 +38,12 @@ MEANT: Mapping[str, Sequence[str]] = {
     "--formulation": ("method", "formulations", "algorithm", "qp", "model", "type"),
     "--case": ("load-case", "loadcase", "load", "cases", "combination"),
     "--variant": ("version-of", "config", "configuration"),
+    "--vary": ("grid", "sweep", "range", "over", "param", "parameter", "parameters", "key", "variable"),
     "--set": ("override", "overrides", "param", "parameter", "change", "define", "d", "value", "key"),
     "--json": ("data", "result", "results", "export", "verbose", "debug", "full"),
     "--vtk": ("paraview", "vtu"),
     "--max-iterations": ("iterations", "maxiter", "max-iter", "limit"),
     "--stress": ("von-mises", "contour", "shear"),
-    "--vary": ("grid", "sweep", "range", "over"),
     "--workers": ("jobs", "j", "processes", "threads", "cores", "parallel", "cpus"),
 }
 """Option -> what others call it."""

@@ -3,10 +3,14 @@
 from collections.abc import Iterator
 
 from bemcontact.assessment.certificate import HEADINGS, CertificateKind
+from bemcontact.assessment.penetration import Misfit
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report.bars import error_percent
 from bemcontact.report.formatting import number, sentence_case
 from bemcontact.report.verdicts import Verdict, mesh_verdict, quality_of_misfit
+
+MOVED_AWAY = (Misfit.OFF, Misfit.MOVED)
+"""What may be wrong with a state of a path because the body moves far up to its end."""
 
 
 def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:
@@ -43,7 +47,7 @@ def _between_the_ends(path: ParameterPath) -> str:
     return (
         f"The mesh is made for the ends of the path. At {len(path.coarse)} of {len(path.pressed)} breakpoints with "
         f"contact, at {path.key} = {values}, errors of peaks are larger than asked, {error}. The table has the error "
-        "bar of each."
+        "bar of each. A study makes a mesh for each value."
     )
 
 
@@ -57,4 +61,6 @@ def path_sentence(path: ParameterPath) -> str:
     notes = (f"{sentence_case(note)}." for note in path.notes)
     deepest = () if path.penetration is None else (path.penetration.words,)
     where = () if path.penetrates_at is None else (f"This is at {path.key} = {number(path.penetrates_at)}.",)
+    if path.penetrates_at != path.reaches[1] and path.penetration and path.penetration.kind in MOVED_AWAY:
+        where += ("A path has the gaps and normals of its end; a study has those of each value.",)
     return " ".join((*deepest, *where, *notes, exact))

@@ -42,6 +42,7 @@ from bemcontact.report.formatting import (
     zone_surfaces,
 )
 from bemcontact.report.page import picture, template
+from bemcontact.report.peak_places import level_zones
 from bemcontact.report.verdicts import NOT_LOOKED_AT, case_verdicts, overall, result_verdicts
 from bemcontact.report.zones import by_case, interval_rows, zone_rows
 from bemcontact.version import __version__
@@ -265,7 +266,9 @@ def _envelope(cases: Mapping[str, Result], units: Units) -> Iterator[tuple[str, 
         highest = own[int(result.solution.pressure[own].argmax())]
         largest = float(result.solution.pressure[highest])
         x, y = result.contact.points[highest].tolist()
-        place = vector((x, y), units.length, scale=resolved_size(result.to_dict()))
+        record = result.to_dict()
+        level = zone in level_zones(record, 1.0)
+        place = "all along the contact" if level else vector((x, y), units.length, scale=resolved_size(record))
         bar = result.accuracy.peak_bar(zone)
         if largest > 0:
             yield zone, with_unit(with_bar(largest, bar), units.stress), most, place

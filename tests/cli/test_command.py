@@ -38,7 +38,8 @@ def test_a_command_works_with_searches_for_garbage(in_program: bool):
     [
         ("solve", "--plot", "--figure"), ("solve", "--output", "--out"), ("solve", "--tolerance", "--accuracy"),
         ("solve", "--method", "--formulation"), ("solve", "--mesh", "--refine"), ("solve", "--load_case", "--case"),
-        ("study", "--jobs", "--workers"), ("check", "--plot", "--figure"),
+        ("study", "--jobs", "--workers"), ("check", "--plot", "--figure"), ("path", "--parameter", "--vary"),
+        ("check", "--parameter", "--set"),
     ],
 )  # fmt: skip
 def test_another_word_for_an_option_is_led_to_it(block: Path, command: str, given: str, meant: str):

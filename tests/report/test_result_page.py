@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from mesh_studies import punch
+from mesh_studies import block, punch
 from page_reader import ensure_self_contained, read
 from results import EACH, cases, condensed, punched, rolled
 from tool_problems import FREE, FREE_CASES, made
@@ -125,6 +125,13 @@ def test_load_cases_have_the_largest_of_all():
         }
         most = max(own, key=own.__getitem__)
         assert f"{zone}{own[most]:.5g}{most}(" in together(text[text.index("Largest of all load cases") :])
+
+
+def test_a_level_pressure_has_no_place_under_load_cases():
+    """Uniform pressure on a block: the place would be that of round-off."""
+    case = {"pressed": {"conditions": {"top": {"pressure": 2}}}}
+    text = read(render(bemcontact.solve_cases(block(load_cases=case)), {}, None)).text
+    assert "pressedallalongthecontact" in together(text[text.index("Largest of all load cases") :])
 
 
 @pytest.mark.slow

@@ -1,5 +1,7 @@
 """Verdicts on the equations and on the mesh: what is written never states more than what is known."""
 
+from dataclasses import replace
+
 import pytest
 from accuracies import accuracy, bar
 from markupsafe import escape
@@ -8,6 +10,7 @@ from mesh_studies import block
 import bemcontact
 from bemcontact.analysis.compare import mesh_study
 from bemcontact.assessment.accuracy import Accuracy
+from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.options import ComparisonOptions
 from bemcontact.report.bars import mesh_in_short
 from bemcontact.report.page import render
@@ -88,3 +91,18 @@ def test_of_an_end_that_a_path_does_not_reach_no_mesh_is_judged(start: float, to
     assert beyond.quality == "fair"
     assert "The path ends at 0, where errors were not estimated" in beyond.words
     assert "at most" not in beyond.words
+
+
+@pytest.mark.parametrize(
+    ("kind", "at", "led"),
+    [(Misfit.OFF, 1.0, True), (Misfit.MOVED, 1.0, True), (Misfit.MOVED, 3.0, False), (Misfit.PENETRATION, 1.0, False)],
+)
+def test_a_path_whose_body_moves_far_up_to_its_end_leads_to_a_study(kind: Misfit, at: float, led: bool):
+    """A path has the gaps of its end, so that states before it may be wrong where the body moves far."""
+    path = bemcontact.follow(block(), "conditions.top.pressure", start=1.0, to=3.0)
+    misfit = Penetration(
+        kind=kind, depth=1.0, allowed=0.0, at=(0.0, 0.0), edge="under", zone="foot", paired=True, words="Off."
+    )
+    equations, *_ = path_verdicts(replace(path, penetration=misfit, penetrates_at=at))
+    assert equations.words.startswith(f"Off. This is at conditions.top.pressure = {at:g}.")
+    assert ("a study has those of each value" in equations.words) is led
