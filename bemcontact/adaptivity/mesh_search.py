@@ -25,6 +25,8 @@ Halved elements keep the ratio to their neighbors, and with it an error: that of
 """
 MORE_LAYERS, MOST_LAYERS = 1.25, 2.0
 """Factors of the layers where the end of contact is what limits, and of those that the accuracy asks for, in a pass."""
+BESIDE_JOINT = 4.0
+"""Width of the layers beside an end of contact over its distance from a joint: there the pressure changes within it."""
 END_SHARE = 0.1
 """Part of the change of the pressure that the layers of an end may have."""
 BESIDE_END = 0.25
@@ -62,7 +64,7 @@ class MeshSearch(MeshSizes):
     def move(self, problem: Problem) -> None:
         """Go on with contacts as they are in another problem; corners of surfaces are opposite to other places."""
         moved = type(self).of(self.problem.on_contacts_of(problem))
-        self.problem, self.marks, self.facing = moved.problem, moved.marks, moved.facing
+        self.problem, self.marks, self.joints, self.facing = moved.problem, moved.marks, moved.joints, moved.facing
 
     def halve(self) -> None:
         """Halve all elements."""
@@ -113,10 +115,13 @@ class MeshSearch(MeshSizes):
                             ends.append(ContactEnd(loop=loop, position=at, after=after, width=layer))
         kept: list[ContactEnd] = []
         for end in ends:
-            first = end.width / LAYERS**3
-            joints = self.outline.loops[end.loop].joints
+            joints = self.joints[end.loop]
             nearest = float(joints[np.argmin(np.abs(joints - end.position))])
-            if abs(nearest - end.position) < first / 2:
+            away = abs(nearest - end.position)
+            if away < end.width / BESIDE_JOINT:
+                end = replace(end, width=max(BESIDE_JOINT * away, end.width / LAYERS**3))
+            first = end.width / LAYERS**3
+            if away < first / 2:
                 end = replace(end, position=nearest)
             if not any(self._same(end, other, first) for other in kept):
                 kept.append(end)

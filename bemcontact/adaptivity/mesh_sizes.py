@@ -10,6 +10,7 @@ import numpy as np
 from bemcontact.adaptivity.facing_sizes import FacingStretch, ends_of_parts, facing_stretches
 from bemcontact.adaptivity.first_sizes import SizedOutline, sized_outline, surface_sizes
 from bemcontact.adaptivity.sizes import GROWTH, SAME, Layers, Limit, Loop
+from bemcontact.arrays import Array
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problems.geometry import MOST_ELEMENTS
 from bemcontact.problems.problem import Problem
@@ -43,6 +44,8 @@ class MeshSizes:
     outline: SizedOutline
     sources: list[list[Limit]]
     marks: list[list[float]]
+    joints: list[Array]
+    """Positions where edges of each loop begin or end, or parts of these that another body faces."""
     facing: list[FacingStretch] = field(default_factory=list)
     layers: list[tuple[ContactEnd, float]] = field(default_factory=list)
     spots: list[tuple[int, Limit]] = field(default_factory=list)
@@ -74,15 +77,17 @@ class MeshSizes:
             limits.append(useful_limits(loop, own))
             marks.append(ends)
         facing = facing_stretches(problem, shape.loops)
+        joints = [loop.joints for loop in shape.loops]
         for number, places in ends_of_parts(problem, shape.loops):
             marks[number] += places
+            joints[number] = np.append(joints[number], places)
         for item in facing:
             marks[item.onto] += item.opposite_ends
         for loop, own, ends in zip(shape.loops, limits, marks, strict=True):
             own += between_marks(loop, ends)
         # A mesh that is found asks for the accuracy as before.
         kept = problem.model_copy(update={"accuracy": problem.asked_accuracy})
-        return cls(problem=kept, outline=shape, sources=limits, marks=marks, facing=facing)
+        return cls(problem=kept, outline=shape, sources=limits, marks=marks, joints=joints, facing=facing)
 
     def mesh(self) -> Problem:
         """The problem with elements as the sources ask."""

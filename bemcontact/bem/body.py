@@ -29,6 +29,7 @@ from bemcontact.contact.free_motions import MotionAlgebra
 from bemcontact.contact.load_cases import BALANCED, Pinned
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problems.body_surface import BodySurface, BodyZone
+from bemcontact.problems.curves import CircularArc
 from bemcontact.problems.material import Material
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import Circle, DeflectedContour
@@ -375,7 +376,7 @@ def ensure_held(body: Body) -> None:
     """Refuse loads that contact cannot hold, with the `ProblemError` of `body_of`."""
     try:
         if violation := body.pinned.violation(body.factors, body.forces, body.problem.units.model_dump()):
-            raise ProblemError(violation)
+            raise ProblemError(violation + _rest_in_bore(body))
         _ensure_room_where_held(body)
         _check_support(body)
     except ProblemError as error:
@@ -384,6 +385,31 @@ def ensure_held(body: Body) -> None:
             raise
         path = ("load_cases" if case in body.problem.load_cases else "combinations", case)
         raise ProblemError(Issue(path=path, message=str(error))) from None
+
+
+def _rest_in_bore(body: Body) -> str:
+    """Say where a round body has to be drawn in a round bore so that its load goes through the middle of the bore."""
+    problem, unit = body.problem, replace(body.seen, coefficients=np.eye(body.seen.coefficients.shape[1]))
+    bores = [zone.surface for zone in problem.zones.values()]
+    rims = [problem.edge(name).curve for zone in problem.zones for name in problem.edges_of(zone)]
+    if problem.several or problem.tools or not all(isinstance(it, Circle) and it.body == "inside" for it in bores):
+        return ""
+    middles = (
+        {it.center for it in bores if isinstance(it, Circle)},
+        {it.center for it in rims if isinstance(it, CircularArc)},
+    )
+    if not all(isinstance(it, CircularArc) for it in rims) or any(len(it) > 1 for it in middles):
+        return ""
+    (bore,), (rim,) = np.array(list(middles[0])), np.array(list(middles[1]))
+    force = body.motion_load(unit)[:2] @ body.factors
+    moment = body.motion_load(unit.rotations([tuple(rim.tolist())]))[0] @ body.factors
+    if not force.any() or abs(moment) > 0:
+        return ""
+    x, y = bore + np.hypot(*(rim - bore)) * force / np.hypot(*force) - rim
+    return (
+        f"; it slides around the bore until its load goes through the middle of the bore: draw it there, moved by "
+        f"({x:.12g}, {y:.12g})"
+    )
 
 
 def _ensure_room_where_held(body: Body) -> None:

@@ -25,6 +25,7 @@ from adaptive_problems import (
 )  # fmt: skip
 from debonds import halves
 
+from bemcontact import problem as problem_of
 from bemcontact import solve
 from bemcontact.adaptivity import adapt
 from bemcontact.adaptivity.adapt import Meshed, meshed
@@ -774,3 +775,31 @@ def test_without_a_load_no_element_is_divided_for_round_off(elements: int | None
     meshed(crack, progress.append)
     unknowns = [int(number) for words in progress for number in re.findall(r"(\d+) unknowns", words)]
     assert max(unknowns) < 1000, progress
+
+
+@pytest.mark.slow
+def test_contact_that_reaches_a_little_around_a_fillet_is_found_at_once():
+    """Contact begins a length d behind a flat edge, where the pressure K p / √d of a flat punch is E d / R.
+
+    So d is proportional to the load to the power 2/3, and the peak to 2/3 too: a tenth of the load has 10^(1/3) times
+    the peak over the load. The least d is 1e-5 of the contact.
+    """
+    line = {"name": "axis", "start": [0, 6], "end": [0, 0]}
+    bottom = {"name": "bottom", "start": [0, 0], "end": [18, 0]}
+    outer = [line, bottom, {"name": "fillet", "fillet": 0.7}, {"name": "right", "start": [18, 0], "end": [18, 6]}]
+    peaks = []
+    for pressure in (0.1, 0.01):
+        stated = {
+            "name": "block", "material": {"young_modulus": 1e4, "poisson_ratio": 0.3},
+            "boundary": {"outer": [*outer, {"name": "top"}]},
+            "conditions": {"axis": {"displacement": {"x": 0}}, "top": {"pressure": pressure}},
+            "contact_zones": {"c": {"edges": ["bottom", "fillet"],
+                                    "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}},
+        }  # fmt: skip
+        result = solve(problem_of(stated))
+        assert result.holds
+        assert result.accuracy.passes <= 6
+        assert 0 < result.intervals[0].end[0] - 17.3 < 1e-3
+        peaks.append(result.accuracy.bar_of("peak", "c"))
+    light, lighter = peaks[0].value / 0.1, peaks[1].value / 0.01
+    assert lighter / light == pytest.approx(10 ** (1 / 3), rel=peaks[0].bar + peaks[1].bar)

@@ -1,5 +1,7 @@
 """A rigid surface that is the deflected contour of the same body: its gap, its loads, and contact on it."""
 
+import re
+
 import numpy as np
 import pytest
 from several_bodies import elastic, stated
@@ -246,3 +248,30 @@ def test_a_point_that_is_held_beside_an_elastic_body_slides_into_no_wedge():
     low = elastic({"outer": [{"name": k, "start": at, "elements": 8} for k, at in corners.items()]}, {"bottom": HELD})
     both = stated(name="both", bodies={"disk": disk, "low": low}, contacts={"c": {"between": ["disk/nose", "low/top"]}})
     assert not [note for note in body_of(both).notes if "wedge" in note]
+
+
+def roller_in_bore(center, load):
+    """A roller of radius 8 in a bore of radius 10 about the origin, under its weight."""
+    rim = {"name": "rim", "kind": "arc", "center": center, "radius": 8, "angles": [90, 450]}
+    bore = {"kind": "circle", "center": [0, 0], "radius": 10, "body": "inside"}
+    return stated(
+        name="roller in a bore",
+        material={"young_modulus": 2e5, "poisson_ratio": 0.3},
+        boundary={"outer": [rim]},
+        loads={"gravity": {"density": 1.0, "acceleration": load}},
+        contact_zones={"bore": {"edges": ["rim"], "surface": bore}},
+    )
+
+
+@pytest.mark.parametrize(
+    ("center", "load"), [((1.0, -(3.0**0.5)), (0.0, -0.5)), ((0.3, -1.1), (0.3, -0.4)), ((1, -1), (-0.13, -0.8))]
+)
+def test_a_roller_off_its_load_line_is_told_where_it_rests_in_its_bore(center, load):
+    """Statics: at rest its load goes through both middles. It is as far from the middle of the bore as it is drawn."""
+    with pytest.raises(ProblemError, match="slides around the bore") as refused:
+        solve(roller_in_bore(center, load))
+    moved = re.search(r"moved by \((\S+), (\S+)\)$", str(refused.value))
+    assert moved
+    there = np.array(center) + [float(number) for number in moved.groups()]
+    np.testing.assert_allclose(there, np.hypot(*center) * np.array(load) / np.hypot(*load), atol=1e-9)
+    assert solve(roller_in_bore(there.tolist(), load)).certified
