@@ -11,8 +11,9 @@ import numpy as np
 
 from bemcontact.analysis.diagnostics import longer
 from bemcontact.analysis.linear_theory import Noticed, linear_theory
+from bemcontact.analysis.moved_contact import judged_to
 from bemcontact.analysis.path_states import FollowedPath
-from bemcontact.analysis.placement import part_of_path, placement
+from bemcontact.analysis.placement import placement
 from bemcontact.analysis.second_order import second_order
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.footprint import Footprint, footprint
@@ -222,7 +223,7 @@ def penetration_on_path(
     """
     varied, path = followed.varied, followed.path
     worst, at, notes = None, None, dict[str, list[float]]()
-    last, near, strained = len(path.parameter) - 1, part_of_path(varied.problem), dict[str, tuple[Noticed, float]]()
+    last, near, strained = len(path.parameter) - 1, judged_to(varied.problem), dict[str, tuple[Noticed, float]]()
     for i, t in enumerate(path.parameter.tolist()):
         value, solution = followed.value(t), path.breakpoint(i)
         if solution.pressure.max(initial=0.0) <= FIRST_TOUCH * path.pressure.max(initial=0.0):

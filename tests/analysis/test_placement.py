@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from bemcontact import follow, problem, solve
 from bemcontact.adaptivity import resting_contacts
 from bemcontact.adaptivity.resting_contacts import RESTING
-from bemcontact.analysis.placement import LEAST_ASKED, NOTED, WITHHELD
+from bemcontact.analysis.moved_contact import LEAST_ASKED, NOTED, WITHHELD
 from bemcontact.assessment.penetration import Misfit
 from bemcontact.problems import Problem
 

@@ -1,0 +1,260 @@
+"""Contact solved once more with the gaps of the displaced places: what it changes, and what of that is told.
+
+The change is the error of the first solution, to first order.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bemcontact.analysis.displaced_contact import turn_of_body
+from bemcontact.analysis.moved_contact import (
+    WITHHELD,
+    Judgement,
+    MovedContact,
+    judged_to,
+    noted,
+)
+from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.assessment.footprint import footprint
+from bemcontact.assessment.penetration import Misfit
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.problems.problem import Problem
+
+SMALL_COMPONENT = 0.15
+"""Component of the force on a tool over the force from which its change is judged by itself, and not by the force.
+
+What is prescribed does not change; the other component may, by far more than the force as a whole."""
+SMALL_CONTACT = 0.08
+"""Force of a contact over that of its zone from which it is judged by itself, and not by this part."""
+MOVES_ON = 0.8
+"""Part of a motion by which a body moves on in the second solution, from which it is not held: the steps do not end.
+
+They are a geometric series. A body that moves back in the second solution is held."""
+NO_SQUARE = 2.0
+"""A motion that is so many times the change of the gaps, or the turn of normals and body times the motion of places,
+does not come from these, which are of second order."""
+NO_CHANGE = 1e-7
+"""Difference of the gaps, over the displacement scale of contact, that changes nothing."""
+SAME = 1e-9
+"""Relative difference of the changes of two forces that is round-off, as of a body and its mirror image."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SecondSolution:
+    """A second solution beside the first one.
+
+    Parameters
+    ----------
+    first : the first solution, and where its motion takes contact
+    contact, solution : with the gaps and the load of the displaced places
+    """
+
+    first: MovedContact
+    contact: CondensedContact
+    solution: ContactSolution
+
+    @property
+    def solved(self) -> bool:
+        """Whether there is one."""
+        return self.solution.status is Status.SOLVED
+
+    def moves_on(self) -> Judgement:
+        """Find a free motion that goes on by as much again where the body has moved to: nothing holds it.
+
+        A flat block slides on a round support, whose normals are tilted beside the place where it touches. It would
+        move until the tilt balances the load, but takes the place of contact with it. So does a disc that a couple
+        rolls along a plane: it would turn until the lever of the pressure balances the couple. A motion that no load
+        drives, and that is small beside every contact, may be noise of the mesh, and places nothing elsewhere. Nor does
+        a motion that slopes drive by a small part of the forces, as that of a roller between bodies that bend: it is
+        noted.
+        """
+        first, contact = self.first, self.first.contact
+        if not self.solved or not contact.free_motions:
+            return None, ()
+        reach, moved = abs(contact.rigid_motions).max(axis=0), first.moved
+        before = first.solution.rigid_amplitudes * reach
+        unseen = first.unheld()  # their amplitudes are a rule's
+        change = self.solution.rigid_amplitudes - first.solution.rigid_amplitudes
+        further = (change - unseen @ (unseen.T @ change)) * reach * np.where(before < 0, -1.0, 1.0)
+        before = abs(before)
+        pressed = np.maximum(first.solution.pressure, self.solution.pressure) > 0
+        turned = abs(moved.turn[pressed]).max() + abs(turn_of_body(first.gaps))
+        square = max(abs(moved.change[pressed]).max(), turned * abs(moved.motion[pressed]).max())
+        least = max(NO_SQUARE * square, NO_CHANGE * contact.scales.displacement)
+        lengths = contact.lengths_by_zone @ (first.solution.pressure > 0)
+        slight = first.noted * lengths[lengths > 0].min(initial=np.inf)
+        noise = (before + further < slight * reach) & (contact.motion_load == 0)
+        held = (further < np.maximum(MOVES_ON * before, least)) | noise
+        if held.all():
+            return None, ()
+        j, part = int(np.argmax(np.where(held, 0.0, further))), self._push_of_slopes()
+        slight_push = part < first.noted
+        if (held | slight_push).all():
+            words = (
+                f"no contact holds the {contact.motion_names[j]}, and no load drives it: slopes push along it by "
+                f"{100 * part[j]:.2g} % of the force of contact; its amount is not known, and a little friction holds "
+                "it"
+            )
+            return None, (words,)
+        j = int(np.argmax(np.where(held | slight_push, 0.0, further)))
+        i = int(np.argmax(contact.weights * first.solution.pressure * abs(contact.rigid_motions[:, j])))
+        words = (
+            f"No contact holds the {contact.motion_names[j]} against the load. Only slopes and levers as drawn seem to "
+            f"hold it, and they move with the body. Along this motion contact moves by {first.length(before[j])}, and "
+            f"from there on by {first.length(further[j])}. Prescribe a displacement that holds the body in this "
+            "direction."
+        )
+        return first.misfit(Misfit.MOVED, words, i, float(further[j]), float(least)), ()
+
+    def _push_of_slopes(self) -> Array:
+        """Largest part (k,) of the force of a zone that acts along each free motion; infinite for those with a load."""
+        contact, pressure = self.first.contact, self.first.solution.pressure
+        work = abs((contact.weights_by_zone * pressure) @ contact.rigid_motions)
+        force = (contact.lengths_by_zone @ pressure)[:, None] * abs(contact.rigid_motions).max(axis=0)
+        part = np.divide(work, force, out=np.zeros_like(work), where=force > 0).max(axis=0)
+        return np.where(contact.motion_load == 0, part, np.inf)
+
+    def forces_changed(self) -> Judgement:
+        """Judge how the force of each contact changes with the gaps and normals of the displaced places.
+
+        The force on a tool that is free along one axis is judged along the other one by that component.
+        """
+        if not self.solved:
+            return None, ()  # as is said of the peak
+        first, contact, moved = self.first, self.first.contact, self.first.moved
+        zones, within = self._contacts()
+        own, before, after = contact.weights_by_zone[zones] * within, first.solution.pressure, self.solution.pressure
+        was = (own * before) @ contact.normals
+        is_now = (own * after) @ (contact.normals + moved.turn)
+        of_zone = contact.lengths_by_zone @ before
+        total = np.maximum(abs(own) @ before, SMALL_CONTACT * of_zone[zones])
+        change, held = is_now - was, _held_axes(first.gaps.problem)[zones]
+        size = np.where(held & (abs(was) >= SMALL_COMPONENT * total[:, None]), abs(was), total[:, None])
+        changed = np.column_stack([np.hypot(*change.T), abs(change)])
+        size = np.column_stack([total, size])
+        parts = changed / np.where(size > 0, size, np.inf)
+        number, axis = np.unravel_index(int(np.argmax(parts >= (1 - SAME) * parts.max())), parts.shape)
+        part = float(parts[number, axis])
+        if part < first.noted:
+            return None, ()
+        both = abs(own[number]) * np.maximum(before, after)
+        zone, units = contact.zone_names[zones[number]], first.gaps.problem.units
+        motion = first.motion_in(within[number], both)
+        gained, whole = first.vector(change[number], units.line_force), float(of_zone[zones[number]])
+        of = f"along {'xy'[axis - 1]} by {100 * part:.2g} %" if axis else f"{100 * part:.2g} % of it"
+        if abs(own[number]) @ before < SMALL_CONTACT * whole:
+            of = f"{100 * changed[number, 0] / whole:.2g} % of all force there"
+        words = (
+            f"{first.motion_against(zone, motion)}, which is not small beside their shapes: with the gaps and the "
+            "directions of the surfaces where the body then is, the force between them changes by "
+            f"{gained}, {of}; {first.remedy(motion)}"
+        )
+        off = float(abs(moved.change[within[number]]).max())
+        return first.judged(words, withheld=part >= WITHHELD, i=int(np.argmax(both)), depth=off)
+
+    def peaks_changed(self, zones: Sequence[str], nearby: Array | None) -> Judgement:
+        """Judge how the peak of each of some zones changes with the gaps and normals of the displaced places.
+
+        `nearby` (2, zones) is as of `placement`.
+        """
+        first, contact, before = self.first, self.first.contact, self.first.solution.pressure
+        own, change = self._peak_change(zones)
+        if self.solved and abs(change) < first.noted:
+            return None, ()
+        if self.solved and nearby is not None:
+            beyond = self._peak_change(zones, nearby)
+            if abs(beyond[1]) < WITHHELD:
+                return None, (_off_by_a_little(contact.zone_names[contact.zone[own][0]], first.gaps.problem),)
+            own, change = beyond
+        pressure = np.where(own, np.maximum(before, self.solution.pressure if self.solved else 0.0), -1.0)
+        i = int(np.argmax(pressure))
+        motion = first.motion_in(own, pressure)
+        effect = (
+            f"with the gaps after this motion, the peak pressure there {'rises' if change > 0 else 'falls'} by "
+            f"{100 * abs(change):.2g} %{' of the largest' * bool(before[own].max() < before.max())}"
+            if self.solved
+            else "with the gaps after this motion, contact does not hold the body"
+        )
+        words = (
+            f"{first.motion_against(first.zone(i), motion)}, which is not small beside their shapes: {effect}; "
+            f"{first.remedy(motion)}"
+        )
+        off = float(abs(first.moved.change[own]).max())
+        return first.judged(words, withheld=not self.solved or abs(change) >= WITHHELD, i=i, depth=off)
+
+    def places_changed(self) -> Iterator[str]:
+        """Note the contact whose place changes most, and that whose length does, by a noticeable part of its length."""
+        was = footprint(self.first.contact, self.first.solution).intervals
+        is_now = footprint(self.contact, self.solution).intervals
+        if not was or [item.run for item in was] != [item.run for item in is_now]:
+            return
+        before, after = (np.array([item.arc for item in intervals]).reshape(-1, 2) for intervals in (was, is_now))
+        lengths = np.ptp(before, axis=1), np.ptp(after, axis=1)
+        longer = np.maximum(*lengths)
+        shifts, grown = (
+            np.divide(change, longer, out=np.zeros(len(was)), where=longer > 0)
+            for change in (abs(np.mean(after - before, axis=1)), lengths[1] - lengths[0])
+        )
+        if shifts[number := int(np.argmax(shifts))] >= self.first.noted:
+            yield (
+                f"with the gaps after the motion of the body, contact of '{was[number].zone}' is elsewhere by "
+                f"{100 * shifts[number]:.2g} % of its length, or more; error bars of its ends and of rotations do not "
+                "include this"
+            )
+        if abs(grown[number := int(np.argmax(abs(grown)))]) >= self.first.noted:
+            yield (
+                f"with the gaps after the motion of the body, contact of '{was[number].zone}' is "
+                f"{'longer' if grown[number] > 0 else 'shorter'} by {100 * abs(grown[number]):.2g} %; error bars of "
+                "its length and ends do not include this"
+            )
+
+    def _contacts(self) -> tuple[IntArray, BoolArray]:
+        """Zone (c,) and points (c, n) of each unbroken contact of one of both solutions; of one alone, the zone.
+
+        What one contact gains another one of its zone may lose, as both walls of a groove do.
+        """
+        contact, zones, within = self.first.contact, list[int](), list[BoolArray]()
+        every = [*self.first.contacts((self.first.solution.pressure > 0) | (self.solution.pressure > 0))]
+        for number in range(len(contact.zone_names)):
+            found = [own for zone, own in every if zone == number]
+            found = found if len(found) > 1 else [contact.lengths_by_zone[number] != 0]
+            zones += [number] * len(found)
+            within += found
+        return np.array(zones), np.array(within)
+
+    def _peak_change(self, zones: Sequence[str], nearby: Array | None = None) -> tuple[BoolArray, float]:
+        """Points (n,) of the contact in one of the zones whose peak changes most, and its change over the largest peak.
+
+        Where the peaks of the zones nearby on a path are known, it is the zone, and the change beyond these.
+        """
+        contact, before = self.first.contact, self.first.solution
+        of, own = self._contacts()
+        if nearby is not None:
+            of = np.arange(len(contact.zone_names))
+            own = contact.zone == of[:, None]
+        was, is_now = (np.where(own, item.pressure, 0.0).max(axis=1, initial=0.0) for item in (before, self.solution))
+        changes = (is_now - (was if nearby is None else np.clip(is_now, *nearby))) / before.pressure.max()
+        changes[[contact.zone_names[number] not in zones for number in of.tolist()]] = 0.0
+        number = int(np.argmax(abs(changes)))
+        return own[number], float(changes[number])
+
+
+def _held_axes(problem: Problem) -> BoolArray:
+    """Axes (zones, 2) along which the tool of each zone is held, if it is free along the other one."""
+    held = np.zeros((len(problem.zones), 2), bool)
+    for tool in problem.tools.values():
+        free = np.array(tool.free[:2])
+        held[[[*problem.zones].index(zone) for zone in tool.zones]] = ~free & free.any()
+    return held
+
+
+def _off_by_a_little(zone: str, problem: Problem) -> str:
+    """Say of a state on a path that its peak is that of a parameter a little off, or off by less than is withheld."""
+    return (
+        f"the body moves far beside its shape: with the gaps after the motion, the peak pressure on the surface of "
+        f"'{zone}' changes by {100 * noted(problem):.2g} % or more, but by less than {100 * WITHHELD:.2g} % or than it "
+        f"changes within {100 * judged_to(problem):.2g} % of the path"
+    )
