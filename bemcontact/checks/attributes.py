@@ -6,7 +6,12 @@ from typing import Any, ClassVar
 
 PLACES = {
     "footprint.peak.pressure": ("peak", "max_pressure", "maximum_pressure", "peak_pressure", "p_max", "pmax", "max"),
-    "pressure": ("pressure", "pressures", "stress", "stresses", "traction", "tractions", "p"),
+    "pressure": ("pressure", "pressures", "traction", "tractions", "p"),
+    "stress": ("stress", "stresses", "sigma", "stress_at", "stress_tensor"),
+    "largest_stresses": (
+        "largest_stresses", "von_mises", "mises", "max_stress", "maximum_stress", "peak_stress", "max_von_mises",
+        "max_shear", "tresca",
+    ),
     "solution.displacement": ("displacement", "displacements", "deformation", "deflection", "u"),
     "solution.rigid_amplitudes": ("rigid_amplitudes", "amplitudes", "motions", "rotation", "rotations"),
     "solution.status": ("status",),

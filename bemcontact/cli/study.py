@@ -33,7 +33,8 @@ def study(
             metavar="NAME,…",
             help=with_default(
                 "Outputs to show: peak, peak_x, peak_y, resultant, moment, displacement; of each zone, or of one as in "
-                "force.foot: force, force_x, force_y, start, end, length, intervals, intensity; motion, rotation.",
+                "force.foot: force, force_x, force_y, start, end, length, intervals, intensity; motion, rotation; "
+                "von_mises and, of each zone, max_shear, which take time.",
                 "peak,resultant,length,displacement",
             ),
             show_default=False,

@@ -1,7 +1,7 @@
 """Key paths into nested mappings and lists, and raw values of a problem together with their key paths."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, Self, TypeVar
 
 from pydantic import BaseModel, ValidationError
@@ -114,7 +114,7 @@ def _position(data: list[Any] | tuple[Any, ...], step: str | int, path: KeyPath)
             return step
         message = f"there is no entry [{step}], the list has {len(data)}; count from 0"
         raise ProblemError(Issue(path=path, message=message))
-    names = [entry.get("name") if isinstance(entry, Mapping) else None for entry in data]
+    names = _entry_names(data)
     if step in names:
         return names.index(step)
     known = [name for name in names if isinstance(name, str)]
@@ -125,6 +125,16 @@ def _position(data: list[Any] | tuple[Any, ...], step: str | int, path: KeyPath)
         else f"a list has positions, not keys; write {position} instead of {step!r}"
     )
     raise ProblemError(Issue(path=path, message=message))
+
+
+def _entry_names(data: Sequence[Any]) -> list[Any]:
+    """Names of the entries of a list, None without one; a fillet without a name has that of the edge it becomes."""
+    names = [entry.get("name") if isinstance(entry, Mapping) else None for entry in data]
+    following = [*names[1:], *names[:1]]
+    return [
+        f"{names[i - 1]}-{following[i]}" if name is None and isinstance(entry, Mapping) and "fillet" in entry else name
+        for i, (name, entry) in enumerate(zip(names, data, strict=True))
+    ]
 
 
 def with_entry(data: Any, path: KeyPath, value: Any) -> Any:

@@ -219,6 +219,22 @@ def deflected_by(zone: str, surface: DeflectedContour, problem: Problem) -> str:
     return "; ".join([*conditions, *loads])
 
 
+def load_cases_in_words(problem: Problem) -> Iterator[str]:
+    """What each load case adds, and what each combination is, in a sentence."""
+    for (name, case), each in zip(problem.load_cases.items(), problem.volume_loads[1:], strict=True):
+        added = [
+            f"{edge} {', '.join(_conditions(condition, problem.edge(edge), problem.units))}"
+            for edge, condition in case.conditions.items()
+        ]
+        for part, loads in zip(problem.parts, each, strict=True):
+            of = f" on {part.name}" if part.name else ""
+            added += [f"{', '.join(words)}{of}" for words in _volume_loads(loads, part)]
+        added += [f"{tool} {tool_in_words(action, problem.units)}" for tool, action in case.tools.items()]
+        yield f"Load case {name} adds: {'; '.join(added)}."
+    for name, factors in problem.combinations.items():
+        yield f"Combination {name}: {' + '.join(f'{factor:g} {case}' for case, factor in factors.items())}."
+
+
 def problem_in_words(problem: Problem) -> list[str]:
     """The paragraphs of its description, then the material and the loads on the volume."""
     loads = "; ".join(volume_loads(problem))

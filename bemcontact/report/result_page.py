@@ -11,7 +11,7 @@ from bemcontact.analysis.result import BEYOND, Result
 from bemcontact.assessment.contender import OUTCOMES
 from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, SHEAR_BELOW, StressPeak
 from bemcontact.options import StressMeasure
-from bemcontact.problems import Units
+from bemcontact.problems import Problem, Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, bars_of, mesh_in_short, with_bar
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.facts import (
@@ -33,6 +33,7 @@ from bemcontact.report.figures.stress import UNIFORM
 from bemcontact.report.formatting import (
     NEGLIGIBLE,
     JsonObject,
+    load_cases_in_words,
     number,
     problem_in_words,
     sentence_case,
@@ -84,7 +85,7 @@ def render(
     return template("result.html").render(
         name=first.contact.name if isinstance(results, Result) else results.name,
         version=__version__,
-        description=problem_in_words(first.problem) if first.problem else [],
+        description=[] if first.problem is None else [*_asked(first.problem, alone=alone is not None)],
         formulation=first.solution.formulation,
         verdicts=verdicts,
         overall=overall(verdicts),
@@ -112,6 +113,13 @@ def render(
         notes_beyond=any(BEYOND in note for result in cases.values() for note in result.notes),
         spec=spec,
     )
+
+
+def _asked(problem: Problem, *, alone: bool) -> Iterator[str]:
+    """The problem in words; under all load cases the permanent loads, and what each load case adds."""
+    yield from problem_in_words(problem if alone else problem.model_copy(update={"case": None}))
+    if not alone:
+        yield from load_cases_in_words(problem)
 
 
 def _headline(record: JsonObject, units: Units) -> Iterator[tuple[str, str, str]]:

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -15,7 +15,7 @@ from bemcontact.problems.problem import Problem
 from bemcontact.report import folder as folders
 from bemcontact.studies.cluster import ensure_dask, rows_by_dask
 from bemcontact.studies.journal import JOURNAL, Journal, opened, recorded
-from bemcontact.studies.outputs import chosen
+from bemcontact.studies.outputs import chosen, of_stress
 from bemcontact.studies.plan import StudyPlan, study_plan
 from bemcontact.studies.rows import MemberRow, row_from
 from bemcontact.studies.table import StudyTable, sorted_rows
@@ -81,7 +81,7 @@ def study(
         keys, or keys with commas between them, take the same values. "radius: KEY1,KEY2" names the column of the table.
         Of a problem with load cases all are solved, unless one is chosen.
     output : names of outputs, such as "peak", "resultant", "force", "length.foot", in a list or with commas in a text;
-        each row keeps all of them
+        each row keeps all of them, and the largest stresses "von_mises" and "max_shear" if one of these is named
     out : folder for tables, page and pictures, and for a journal from which a run that ended early goes on
     workers : number of processes; 1 solves in this process. With more, a script needs the line
         ``if __name__ == "__main__":``, because each process imports it.
@@ -128,6 +128,7 @@ def study_of_plan(
         ensure_dask()
     if folder is not None:
         folders.ensure_folder_writable(folder, folders.STUDY)
+    plan = replace(plan, stresses=of_stress(outputs))
     rows = _computed(plan, folder, lambda tasks: _workers(plan, tasks, workers, scheduler), progress)
     problem = plan.problem
     done = Study(name=problem.title, units=problem.units, axes=plan.axes, outputs=outputs, rows=rows)
@@ -148,10 +149,11 @@ def _computed(
     plan: StudyPlan, folder: Path | None, by: Callable[[Iterator[Any]], Rows], progress: Progress | None
 ) -> tuple[MemberRow, ...]:
     """Rows of all members: those in the journal of the folder, and the others as they are solved."""
-    keys = plan.keys()
+    keys, with_stresses = plan.keys(), replace(plan, stresses=True).keys()
     with broken_pipes_are_errors(), _journal(folder) as journal:
         kept = {} if folder is None else recorded(folder / JOURNAL)
-        rows = {i: row_from(kept[key], i, plan.values(i)) for i, key in enumerate(keys) if key in kept}
+        found = {i: key for i, pair in enumerate(zip(keys, with_stresses, strict=True)) for key in pair if key in kept}
+        rows = {i: row_from(kept[key], i, plan.values(i)) for i, key in found.items()}
         pace = _Pace(total=len(plan), before=len(rows), progress=progress)
         pace.say(len(rows))
         with closing(by(tasks_of(plan, [number in rows for number in range(len(plan))]))) as solved:

@@ -14,12 +14,14 @@ from bemcontact.problems.problem import Problem
 from bemcontact.problems.wording import unknown_word
 from bemcontact.serialization import Leaf
 
-WHOLE = ("peak", "peak_x", "peak_y", "resultant_x", "resultant_y", "moment", "displacement")
+WHOLE = ("peak", "peak_x", "peak_y", "resultant_x", "resultant_y", "moment", "displacement", "von_mises")
 """Outputs of the whole body."""
-OF_ZONES = ("force", "force_x", "force_y", "intervals", "start", "end", "length", "intensity")
+OF_ZONES = ("force", "force_x", "force_y", "intervals", "start", "end", "length", "intensity", "max_shear")
 """Outputs of each contact zone, as ``force.foot``; those of a second interval are ``end.foot[1]``."""
 OF_MOVERS = ("motion", "rotation")
 """Outputs of each tool and free motion, as ``motion.press``."""
+OF_STRESS = ("von_mises", "max_shear")
+"""Outputs that a row has only if one of them was asked for: the search for the largest stresses takes its time."""
 ALL_OF = {"resultant": ("resultant_x", "resultant_y")}
 """Name for several outputs -> these."""
 LENGTH, PRESSURE, LINE_FORCE, LINE_MOMENT, NUMBER = "length", "stress", "line_force", "line_moment", ""
@@ -27,7 +29,7 @@ DIMENSIONS = {
     "peak": PRESSURE, "peak_x": LENGTH, "peak_y": LENGTH, "resultant_x": LINE_FORCE, "resultant_y": LINE_FORCE,
     "moment": LINE_MOMENT, "displacement": LENGTH, "force": LINE_FORCE, "force_x": LINE_FORCE, "force_y": LINE_FORCE,
     "intervals": NUMBER, "start": LENGTH, "end": LENGTH, "length": LENGTH, "intensity": NUMBER, "motion": LENGTH,
-    "rotation": NUMBER,
+    "rotation": NUMBER, "von_mises": PRESSURE, "max_shear": PRESSURE,
 }  # fmt: skip
 """Output -> attribute of the units that has its label; nothing for numbers, and for intensities [p L^α]."""
 USUAL = ("peak", "resultant", "length", "displacement")
@@ -44,9 +46,10 @@ class Reading(Leaf):
     """Estimated error in the unit of the value; null if it is not known."""
 
 
-def readings(result: Result) -> dict[str, Reading]:
-    """All outputs of a result, by name."""
+def readings(result: Result, *, stresses: bool = False) -> dict[str, Reading]:
+    """All outputs of a result, by name; those of stress only if they are asked for."""
     found = dict([*_of_whole(result), *_of_zones(result), *_of_intervals(result), *_of_bars(result)])
+    found |= dict(_of_stresses(result) if stresses else ())
     return {name: Reading(value=_finite(item.value), error=_finite(item.error)) for name, item in found.items()}
 
 
@@ -107,6 +110,20 @@ def _of_bars(result: Result) -> Iterator[tuple[str, Reading]]:
             yield "displacement", _of_bar(bar)
         elif bar.quantity in (*OF_MOVERS, "intensity") and bar.value is not None:
             yield f"{bar.quantity}.{bar.mover or bar.zone}", _of_bar(bar)
+
+
+def _of_stresses(result: Result) -> Iterator[tuple[str, Reading]]:
+    """Largest von Mises stress of all bodies, and largest shear stress below each contact."""
+    largest = result.largest_stresses()
+    peaks = [peak for peak in (largest.inside, largest.boundary) if peak is not None]
+    highest = {"von_mises": max(peaks, key=lambda peak: peak.value, default=None)}
+    for name, peak in {**highest, **{f"max_shear.{zone}": peak for zone, peak in largest.shear.items()}}.items():
+        yield name, Reading(value=None) if peak is None else _reading(peak.value, peak.bar)
+
+
+def of_stress(outputs: Sequence[str]) -> bool:
+    """Whether some outputs are of stress."""
+    return any(name.partition(".")[0] in OF_STRESS for name in outputs)
 
 
 def _of_bar(bar: ErrorBar) -> Reading:

@@ -31,10 +31,12 @@ class StudyPlan:
     ----------
     problem : without variants, unless they are varied
     axes : one or more
+    stresses : whether the largest stresses of members are looked for
     """
 
     problem: Problem
     axes: tuple[Axis, ...]
+    stresses: bool = False
     _variants: dict[str, Problem] = field(default_factory=dict, repr=False)
 
     def __len__(self) -> int:
@@ -85,10 +87,10 @@ class StudyPlan:
         return hashlib.sha256(f"{__version__}\n{self.problem.model_dump_json()}".encode()).hexdigest()
 
     def keys(self) -> list[str]:
-        """Key of each member in the journal; it depends on the problem, the values and the version alone."""
+        """Key of each member in the journal; it depends on problem, values, version and `stresses` alone."""
         digest, written = self.digest(), {axis.name: axis.written for axis in self.axes}
         values = (sorted((written[name], value) for name, value in self.values(i).items()) for i in range(len(self)))
-        texts = (json.dumps([digest, its]) for its in values)
+        texts = (json.dumps([digest, its, "stresses"] if self.stresses else [digest, its]) for its in values)
         return [hashlib.sha256(text.encode()).hexdigest()[:32] for text in texts]
 
     @property

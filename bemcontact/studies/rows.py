@@ -54,8 +54,8 @@ class MemberRow(Leaf):
         return self.outputs.get(column, Reading(value=None))
 
 
-def row_of(number: int, values: Mapping[str, Any], result: Result) -> MemberRow:
-    """The row of a member that was solved."""
+def row_of(number: int, values: Mapping[str, Any], result: Result, *, stresses: bool = False) -> MemberRow:
+    """The row of a member that was solved; its largest stresses are looked for if they are asked for."""
     accuracy, deepest = result.accuracy, result.penetration
     status = MemberStatus.HOLDS
     if not result.certified:
@@ -73,8 +73,11 @@ def row_of(number: int, values: Mapping[str, Any], result: Result) -> MemberRow:
         certified=result.certified,
         met=accuracy.met,
         mesh_error=float(accuracy.worst) if known else None,
-        message=_joined(_joined(_message(status, result), _without_peak(result)), _beyond_bars(result)),
-        outputs=readings(result),
+        message=_joined(
+            _joined(_message(status, result), _without_peak(result)),
+            _joined(_infinite_stress(result) if stresses else "", _beyond_bars(result)),
+        ),
+        outputs=readings(result, stresses=stresses),
     )
 
 
@@ -104,6 +107,12 @@ def _without_peak(result: Result) -> str:
     if result.accuracy.infinite:
         return f"the peak pressure is infinite in {', '.join(result.accuracy.infinite)}"
     return "" if result.footprint.intervals else "the body touches no surface"
+
+
+def _infinite_stress(result: Result) -> str:
+    """Say if stress is infinite somewhere; empty if it is not."""
+    infinite = len(result.largest_stresses().singular)
+    return "stress is infinite at corners or edges, von_mises is the largest value elsewhere" if infinite else ""
 
 
 def _beyond_bars(result: Result) -> str:

@@ -55,7 +55,7 @@ def rows_of_task(plan: StudyPlan, task: Task) -> Iterator[MemberRow]:
             yield failed_row(number, values, str(member))
             continue
         try:
-            yield row_of(number, values, _solved(member, shared.condenser(number)))
+            yield row_of(number, values, _solved(member, shared.condenser(number)), stresses=plan.stresses)
         except MemoryError:
             yield failed_row(number, values, "there is not enough memory; take fewer elements or fewer workers")
         except BemContactError as error:

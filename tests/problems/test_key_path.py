@@ -34,6 +34,22 @@ def test_entry_of_a_list_may_be_given_by_its_name():
     assert existing_path(DATA, ("loads", "gravity", "density")) == ("loads", "gravity", "density")
 
 
+def test_a_fillet_without_a_name_is_given_by_that_of_its_edge():
+    """It is the name of the edge that the problem then has, also where the loop closes."""
+    outer = [{"name": "a", "start": [0, 0], "end": [9, 0]}, {"fillet": 1}, {"name": "b", "end": [0, 9]}, {"name": "d"}]
+    outer.append({"fillet": 1})
+    problem = Problem(
+        name="triangle",
+        material={"young_modulus": 1.0, "poisson_ratio": 0.3},  # pyright: ignore[reportArgumentType]
+        boundary={"outer": outer},  # pyright: ignore[reportArgumentType]
+        conditions={"a-b": {"fixed": True}},  # pyright: ignore[reportArgumentType]
+        contact_zones={"z": {"edges": "b", "surface": {"kind": "plane", "point": (9, 9), "normal": (-1, -1)}}},  # pyright: ignore
+    )
+    for name, radius in (("a-b", 0.5), ("d-a", 0.3)):
+        changed = problem.with_value(f"boundary.outer.{name}.fillet", radius)
+        assert changed.edge(name).length < problem.edge(name).length
+
+
 @pytest.mark.parametrize(
     ("path", "message"),
     [

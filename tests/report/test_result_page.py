@@ -114,6 +114,21 @@ def test_an_infinite_pressure_has_its_place_in_the_head_and_under_load_cases():
     assert "infinitealone(2,0)mm" in together(read(render(both, {}, None)).text)
 
 
+def test_what_was_asked_has_what_each_load_case_adds():
+    """Conditions, loads on the volume and tools of each load case, and the factors of a combination, as stated."""
+    case = {
+        "hot": {"loads": {"temperature": {"expansion": 1e-5, "change": 20}}},
+        "pressed": {"conditions": {"top": {"pressure": 2}}},
+    }
+    both = {"both": {"hot": 1.5, "pressed": 1}}
+    text = read(render(bemcontact.solve_cases(block(load_cases=case, combinations=both)), {}, None)).text
+    asked = together(text)
+    assert "Loadcasehotadds:temperaturechange20,expansion1e-05." in asked
+    assert "Loadcasepressedadds:toppressure2" in asked
+    assert "Combinationboth:1.5hot+1pressed." in asked
+    assert "Onthevolume" not in asked  # the permanent loads alone are those of the problem
+
+
 def test_load_cases_have_the_largest_of_all():
     """The largest peak of each zone, and in which load case."""
     text = read(render(cases(), {}, None)).text

@@ -76,6 +76,21 @@ def test_a_study_in_a_folder_solves_nothing_twice(tmp_path: Path, solved: list[i
 
 
 @pytest.mark.slow
+def test_members_are_solved_again_for_their_largest_stresses_only(tmp_path: Path, solved: list[int]):
+    """A row without stresses does not serve a study of them; one with them serves any other study."""
+    vary = {LOAD: [10.0, 20.0]}
+    for outputs, again in ((["peak"], 2), (["von_mises"], 2), (["length", "max_shear"], 0), (["peak"], 0)):
+        before = len(solved)
+        study = bemcontact.study(CYLINDER, vary, outputs, folder=tmp_path / "study")
+        assert len(solved) - before == again
+    assert study.columns == ("peak",)
+    fresh = bemcontact.study(CYLINDER, vary, ["max_shear"], folder=tmp_path / "fresh")
+    assert len(solved) == 6
+    assert bemcontact.study(CYLINDER, vary, ["peak"], folder=tmp_path / "fresh").rows == fresh.rows
+    assert len(solved) == 6
+
+
+@pytest.mark.slow
 def test_a_run_that_is_interrupted_anywhere_goes_on_to_the_same_table(tmp_path: Path, solved: list[int]):
     """An interrupt after each number of rows; at the end every member was solved once."""
     expected = bemcontact.study(CYLINDER, VARIED, ["peak"]).to_csv()

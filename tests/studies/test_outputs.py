@@ -7,7 +7,7 @@ import pytest
 
 import bemcontact
 from bemcontact.errors import ProblemError
-from bemcontact.studies.outputs import ALL_OF, OF_MOVERS, OF_ZONES, WHOLE, chosen, columns_of, readings
+from bemcontact.studies.outputs import ALL_OF, OF_MOVERS, OF_ZONES, WHOLE, chosen, columns_of, of_stress, readings
 
 MODELS = Path(__file__).parents[2] / "models"
 ZONES = bemcontact.load(MODELS / "gallery" / "three_zones.yaml")
@@ -52,6 +52,22 @@ def test_an_infinite_peak_is_no_number():
 
 def test_outputs_may_be_one_text_as_on_the_command_line():
     assert chosen("peak, force.wall", ZONES) == chosen(["peak", "force.wall"], ZONES)
+
+
+def test_largest_stresses_are_outputs_if_they_are_asked_for():
+    """Below the roller the maximum inside is larger than that on the boundary; each with its error, absolute."""
+    problem = bemcontact.load(MODELS / "gallery" / "hertz_small.yaml")
+    result = bemcontact.solve(problem)
+    largest, found = result.largest_stresses(), readings(result, stresses=True)
+    for name, peak in (("von_mises", largest.inside), ("max_shear.foot", largest.shear["foot"])):
+        assert peak is not None
+        assert peak.bar is not None
+        assert found[name].value == peak.value
+        assert found[name].error == pytest.approx(peak.bar * peak.value)
+        assert chosen([name], problem) == (name,)
+        assert of_stress([name])
+    assert found.keys() - readings(result).keys() == {"von_mises", "max_shear.foot"}
+    assert not of_stress(["peak", "length.foot"])
 
 
 def test_motions_of_tools_are_outputs():

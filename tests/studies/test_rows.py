@@ -27,9 +27,11 @@ def test_a_result_that_is_not_certified_says_so():
 
 def test_a_row_says_why_it_has_no_peak():
     """Below a flat punch the pressure is infinite at both edges; it is proved all the same."""
-    row = row_of(0, {}, bemcontact.solve(bemcontact.load(MODELS / "gallery" / "flat_punch.yaml")))
+    result = bemcontact.solve(bemcontact.load(MODELS / "gallery" / "flat_punch.yaml"))
+    row = row_of(0, {}, result)
     assert (row.holds, row.outputs["peak"].value) == (True, None)
     assert row.message == "the peak pressure is infinite in punch"
+    assert "; stress is infinite at corners or edges, von_mises is" in row_of(0, {}, result, stresses=True).message
 
 
 def test_a_row_has_the_notes_on_what_its_error_bars_do_not_include():

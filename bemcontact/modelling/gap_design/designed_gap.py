@@ -206,9 +206,12 @@ class GapDesign(Leaf, Tabular):
                 "bound of the convex relaxation."
             )
         if self.verified:
-            check = (
-                f"Solved again with the profile and certified: pressures differ by {self.difference:.0e} of the peak."
+            how = (
+                f"pressures differ by {self.difference:.0e} of the peak"
+                if self.difference
+                else "pressures are the same"
             )
+            check = f"Solved again with the profile and certified: {how}."
         else:
             check = (
                 f"The contact states with the profile are not as designed: pressures differ by {self.difference:.0e} "

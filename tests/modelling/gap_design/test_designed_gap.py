@@ -104,6 +104,8 @@ def test_a_pressure_that_is_not_as_designed_is_reported():
     assert not wrong.verified
     assert wrong.difference == pytest.approx(0.01, rel=1e-6)
     assert "are not as designed: pressures differ by 1e-02" in wrong.words
+    same = replace(design, designed=np.array([state.pressure for state in design.after]))
+    assert "certified: pressures are the same." in same.words
 
 
 @pytest.mark.slow
