@@ -355,7 +355,7 @@ def body_of(problem: Problem) -> Body:
     tools = placed_tools(problem, points)
     motions = tuple(free_rigid_motions(part.mesh, permanent.values.of_part(part), mesh.size / 2) for part in mesh.parts)
     names = tuple(f"the body '{part.name}'" for part in problem.parts) if problem.several else (BODY,)
-    bonds = BondedPoints.of(problem, mesh, permanent.values)
+    bonds = BondedPoints.of(problem, mesh, permanent.values, points.tied)
     seen, unseen, apart = free_motions(points, motions, tools, names, bonds)
     body = Body(
         problem=problem, mesh=mesh, outline=outline, points=points, loadings=(permanent, *cases), tools=tools,

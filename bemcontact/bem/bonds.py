@@ -3,6 +3,10 @@
 Tractions act in both directions. They follow from loads, contact pressures and rigid motions by the condition that the
 displacements of both nodes are equal, before anything else is known of contact: bodies that are bonded are one body.
 
+At a corner of an interface, and where three bodies meet, tractions jump from face to face. There are more faces than
+displacements that could tell their tractions. So each face has the traction of the middle node beside it, as contact
+has at the begin of a bond, and what holds the nodes there together is added: the same on all faces of two bodies.
+
 The spin of a body without friction is held in the same way. No pressure spins a disk. But common normals, which are
 those of the stiffer side more than its own, miss its center by a little, and contact would have to hold this spin.
 """
@@ -13,8 +17,9 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem.boundary_values import BoundaryValues
+from bemcontact.bem.contact_points import SMOOTH
 from bemcontact.bem.mesh import Mesh, MeshPart
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.problems.problem import Problem
@@ -48,42 +53,38 @@ class BondedPoints:
     change: Array
 
     @classmethod
-    def of(cls, problem: Problem, mesh: Mesh, values: BoundaryValues) -> Self:
+    def of(cls, problem: Problem, mesh: Mesh, values: BoundaryValues, tied: IntArray) -> Self:
         """List the components of all bonded interfaces, then those of all bodies that might spin.
 
-        There is none along an axis along which conditions hold both nodes.
+        There is none along an axis along which conditions hold both nodes. `tied` (N,) is that of `ContactPoints`.
         """
-        facing = [mesh.facing[name] for name in problem.bonded]
-        elements = np.concatenate([np.flatnonzero(own >= 0) for own in facing] or [np.zeros(0, int)])
-        across = np.concatenate([own[own >= 0] for own in facing] or [np.zeros(0, int)])
-        first, local = mesh.elements[elements], np.tile(np.arange(3), (len(elements), 1))
-        node, pair = np.unique(first, return_inverse=True)
-        pair, share = pair.reshape(-1), np.repeat(np.arange(len(elements)), 3)
-        own, opposite = (elements[share], local.ravel()), (across[share], 2 - local.ravel())
-        lengths = [np.bincount(pair, mesh.tributary[at], len(node)).astype(float) for at in (own, opposite)]
-        other = np.zeros(len(node), int)
-        other[pair] = mesh.elements[opposite]
-        held = values.displacement_given[node] & values.displacement_given[other]
+        element, across = _bonded_elements(problem, mesh)
+        nodes = np.stack([mesh.elements[element], mesh.elements[across, ::-1]], axis=-1)
+        both, pair = np.unique(np.sort(nodes).reshape(-1, 2), axis=0, return_inverse=True)
+        pair = pair.reshape(nodes.shape[:2])
+        low = nodes[..., 0] == both[pair, 0]
+        junction, by_others = _junctions(mesh, both, np.bincount(pair[low], minlength=len(both)), tied)
+        face, at, local = junction[pair], np.repeat(element, 3), np.tile(np.arange(3), len(element))
+        at, local = np.append(at, at[face.ravel()]), np.append(local, local[face.ravel()])
+        low, pair = (np.append(np.where(face, of[:, [1]], of), of[face]) for of in (low, pair))
+        own, other = (np.bincount(pair[of], mesh.tributary[at, local][of], len(both)) for of in (low, ~low))
+        factor = np.where(low, 1.0, -np.divide(own, other, out=np.zeros(len(both)), where=other > 0)[pair])
+        held = values.displacement_given[both].all(axis=1) | by_others[:, None]
         point, axis = np.nonzero(~held)
-        number, count = np.full((len(node), 2), -1), len(point)
+        number, count = np.full((len(both), 2), -1), len(point)
         number[point, axis] = np.arange(count)
-        ratio = lengths[0] / lengths[1]
-        shares = [
-            (*at, number[pair, side], factor[:, None] * np.eye(2)[side])
-            for side in (0, 1)
-            for at, factor in ((own, np.ones(len(pair))), (opposite, -ratio[pair]))
-        ]
+        shares = [(at, local, number[pair, side], factor[:, None] * np.eye(2)[side]) for side in (0, 1)]
         each, sign = np.arange(count), np.eye(2)[axis]
-        moves = [(node[point], each, sign), (other[point], each, -sign)]
+        moves = [(both[point, 0], each, sign), (both[point, 1], each, -sign)]
         for traction, motion in _spins(problem, mesh):
             shares.append((*traction[:2], np.full(len(traction[0]), count), traction[2]))
             moves.append((motion[0], np.full(len(motion[0]), count), motion[1]))
             count += 1
-        element, at, component, tractions = (np.concatenate(part) for part in zip(*shares, strict=True))
+        element, local, component, tractions = (np.concatenate(part) for part in zip(*shares, strict=True))
         free = component >= 0
         nodes, changed, change = (np.concatenate(part) for part in zip(*moves, strict=True))
         return cls(
-            mesh=mesh, count=count, element=element[free], local=at[free],
+            mesh=mesh, count=count, element=element[free], local=local[free],
             component=component[free], tractions=tractions[free], node=nodes, changed=changed, change=change,
         )  # fmt: skip
 
@@ -109,6 +110,31 @@ class BondedPoints:
             gap=np.append(pressures.gap, points + self.changed[seen]),
             change=np.concatenate([pressures.change, self.change[seen]]),
         )
+
+
+def _bonded_elements(problem: Problem, mesh: Mesh) -> tuple[IntArray, IntArray]:
+    """Elements (k,) of both sides of all bonds, and those across."""
+    facing = [mesh.facing[name] for name in problem.bonded]
+    own = np.concatenate([np.flatnonzero(across >= 0) for across in facing] or [np.zeros(0, int)])
+    other = np.concatenate([across[across >= 0] for across in facing] or [np.zeros(0, int)])
+    return np.append(own, other), np.append(other, own)
+
+
+def _junctions(mesh: Mesh, both: IntArray, count: IntArray, tied: IntArray) -> tuple[BoolArray, BoolArray]:
+    """Whether more faces of bonds meet at pairs (p, 2) of nodes than hold them together, and whether others hold one.
+
+    `count` (p,) is the number of elements beside the first node of each.
+    """
+    turned = (count > 1) & (abs(mesh.turns[np.minimum(both[:, 0], len(mesh.elements) - 1)]) > SMOOTH)
+    group, nodes = tied[both[:, 0]], np.unique(both)
+    size, bonds = (np.bincount(tied[at], minlength=len(mesh.nodes)) for at in (nodes, both[:, 0]))
+    junction, held_by = np.isin(group, group[turned | (bonds[group] >= size[group])]), np.arange(len(mesh.nodes))
+    by_others = np.zeros(len(both), bool)
+    for i in np.flatnonzero(junction).tolist():
+        one, two = held_by[both[i]]
+        by_others[i] = one == two
+        held_by[held_by == two] = one
+    return junction, by_others
 
 
 def _spins(problem: Problem, mesh: Mesh) -> Iterator[tuple[tuple[IntArray, IntArray, Array], tuple[IntArray, Array]]]:

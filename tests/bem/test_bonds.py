@@ -1,9 +1,11 @@
 """Bonds that end beside contact, such as a debond or a crack on the common line of two bodies; and held spins."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 from debonds import ARRANGEMENTS, PRESSURE, halves, outline, squeezed
-from several_bodies import HELD, block, elastic, problem, stated
+from several_bodies import HELD, block, elastic, polygon, problem, stated
 
 import bemcontact
 from bemcontact.analysis.solve import solve
@@ -65,6 +67,69 @@ def test_a_fluid_around_a_kinked_interface_presses_uniformly_on_the_debond():
         result = bemcontact.solve(spec)
         assert result.certified
         assert worst_of(result, PRESSURE) < 1e-10
+
+
+STEPPED = {
+    "a": {"bottom": (-4, -4), "right": (4, -4), "top": (4, 4), "wall": (1, 4), "step": (1, 1), "left": (-4, 1)},
+    "b": {"step": (-4, 1), "wall": (1, 1), "top": (1, 4), "left": (-4, 4)},
+}
+THREE = {
+    "a": {"bottom": (-4, -4), "right": (4, -4), "step": (4, 1), "foot": (1, 1), "left": (-4, 1)},
+    "b": {"foot": (-4, 1), "wall": (1, 1), "top": (1, 4), "left": (-4, 4)},
+    "c": {"step": (1, 1), "right": (4, 1), "top": (4, 4), "wall": (1, 4)},
+}
+"""Outlines whose interfaces have a corner, or meet at a place: edges of one name coincide."""
+FLOOR = {"floor": {"edges": "a/bottom", "surface": {"kind": "plane", "point": [0, -4], "normal": [0, 1]}}}
+
+
+@pytest.mark.parametrize("loose", ["", "wall"])
+@pytest.mark.parametrize("orders", list(product((1, -1), repeat=3)))
+@pytest.mark.parametrize("outlines", [STEPPED, THREE], ids=["a corner", "three bodies"])
+def test_a_fluid_around_a_corner_of_an_interface_presses_uniformly(outlines, orders, loose):
+    """Whichever side of each bond is the first, and whether or not the last one is a contact instead."""
+    sides = {}
+    for body, edges in outlines.items():
+        for edge in {"foot", "step", "wall"} & {*edges}:
+            sides.setdefault(edge, []).append(f"{body}/{edge}")
+    pairs = {edge: sides[edge][::order] for edge, order in zip(sorted(sides), orders, strict=False)}
+    fluid = {"top": {"pressure": PRESSURE}, "left": {"pressure": PRESSURE}, "right": {"pressure": PRESSURE}}
+    spec = stated(
+        name="corner",
+        bodies={
+            body: elastic(polygon(**edges), {edge: load for edge, load in fluid.items() if edge in edges})
+            for body, edges in outlines.items()
+        },
+        bonded={edge: pair for edge, pair in pairs.items() if edge != loose},
+        contacts={edge: {"between": pair} for edge, pair in pairs.items() if edge == loose},
+        contact_zones=FLOOR,
+        accuracy=0.01,
+    )  # fmt: skip
+    result = bemcontact.solve(spec)
+    assert result.holds
+    assert worst_of(result, PRESSURE) < 1e-10
+    places = [[1.0, 0.98], [0.98, 1.02], [1.02, 1.02], [0.0, 0.0], [3.0, 3.0]]
+    stress = result.stress(places).components
+    np.testing.assert_allclose(stress, np.tile([-PRESSURE, -PRESSURE, 0], (5, 1)), atol=1e-6 * PRESSURE)
+
+
+@pytest.mark.slow
+def test_a_corner_of_an_interface_of_equal_bodies_is_no_place():
+    """A roller presses on a block: stress beside the corner of a bonded part is that of one block."""
+    outer = {"bottom": (-4, -4), "right": (4, -4), "top": (4, 4), "left": (-4, 4)}
+    roller = {"kind": "circle", "center": [2, 12], "radius": 8, "body": "outside"}
+    found = []
+    for outlines in ({"a": outer}, STEPPED):
+        bodies = {body: elastic(polygon(**edges)) for body, edges in outlines.items()}
+        bodies["a"]["conditions"] = {"bottom": {"fixed": True}}
+        bonds = {edge: [f"a/{edge}", f"b/{edge}"] for edge in ("step", "wall") if "b" in bodies}
+        zones = {"rim": {"edges": "a/top", "surface": roller}}
+        tools = {"roller": {"zones": "rim", "force": {"y": -20}}}
+        result = bemcontact.solve(
+            stated(name="step", bodies=bodies, bonded=bonds, contact_zones=zones, tools=tools, accuracy=0.01)
+        )
+        assert result.holds
+        found.append(result.stress([[0.9, 0.9], [1.1, 1.1], [0.9, 1.1], [1.2, 0.5], [0.0, 1.2]]).components)
+    assert abs(found[1] - found[0]).max() < 0.01 * abs(found[0]).max()
 
 
 def mirrored_load(top, bottom):
