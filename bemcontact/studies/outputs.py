@@ -9,6 +9,7 @@ import numpy as np
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.checks.arguments import texts
+from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, LargestStresses, NoPeak
 from bemcontact.errors import OptionError
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.wording import unknown_word
@@ -115,10 +116,15 @@ def _of_bars(result: Result) -> Iterator[tuple[str, Reading]]:
 def _of_stresses(result: Result) -> Iterator[tuple[str, Reading]]:
     """Largest von Mises stress of all bodies, and largest shear stress below each contact."""
     largest = result.largest_stresses()
-    peaks = [peak for peak in (largest.inside, largest.boundary) if peak is not None]
+    peaks = [peak for peak in (largest.inside, largest.boundary) if peak is not None and not grows(largest)]
     highest = {"von_mises": max(peaks, key=lambda peak: peak.value, default=None)}
     for name, peak in {**highest, **{f"max_shear.{zone}": peak for zone, peak in largest.shear.items()}}.items():
         yield name, Reading(value=None) if peak is None else _reading(peak.value, peak.bar)
+
+
+def grows(largest: LargestStresses) -> bool:
+    """Whether von Mises stress has no maximum inside, or along an edge, but grows up to an infinite one."""
+    return NoPeak.TO_INFINITE in (largest.missing.get(INSIDE), largest.missing.get(ON_BOUNDARY))
 
 
 def of_stress(outputs: Sequence[str]) -> bool:

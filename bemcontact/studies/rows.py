@@ -8,7 +8,7 @@ from typing import Any
 
 from bemcontact.analysis.result import BEYOND, Result
 from bemcontact.serialization import Leaf
-from bemcontact.studies.outputs import Reading, readings
+from bemcontact.studies.outputs import Reading, grows, readings
 
 
 class MemberStatus(StrEnum):
@@ -111,8 +111,12 @@ def _without_peak(result: Result) -> str:
 
 def _infinite_stress(result: Result) -> str:
     """Say if stress is infinite somewhere; empty if it is not."""
-    infinite = len(result.largest_stresses().singular)
-    return "stress is infinite at corners or edges, von_mises is the largest value elsewhere" if infinite else ""
+    largest = result.largest_stresses()
+    if grows(largest):
+        return "von Mises stress grows up to an infinite one: it has no largest value"
+    return "stress is infinite at corners or edges, von_mises is the largest maximum elsewhere" * bool(
+        len(largest.singular)
+    )
 
 
 def _beyond_bars(result: Result) -> str:

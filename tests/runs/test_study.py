@@ -81,12 +81,12 @@ def test_members_are_solved_again_for_their_largest_stresses_only(tmp_path: Path
     vary = {LOAD: [10.0, 20.0]}
     for outputs, again in ((["peak"], 2), (["von_mises"], 2), (["length", "max_shear"], 0), (["peak"], 0)):
         before = len(solved)
-        study = bemcontact.study(CYLINDER, vary, outputs, folder=tmp_path / "study")
+        study = bemcontact.study(CYLINDER, vary, outputs, out=tmp_path / "study")
         assert len(solved) - before == again
     assert study.columns == ("peak",)
-    fresh = bemcontact.study(CYLINDER, vary, ["max_shear"], folder=tmp_path / "fresh")
+    fresh = bemcontact.study(CYLINDER, vary, ["max_shear"], out=tmp_path / "fresh")
     assert len(solved) == 6
-    assert bemcontact.study(CYLINDER, vary, ["peak"], folder=tmp_path / "fresh").rows == fresh.rows
+    assert bemcontact.study(CYLINDER, vary, ["peak"], out=tmp_path / "fresh").rows == fresh.rows
     assert len(solved) == 6
 
 

@@ -3,6 +3,8 @@
 import json
 from pathlib import Path
 
+import pytest
+
 import bemcontact
 from bemcontact.analysis.result import BEYOND
 from bemcontact.studies.rows import MemberStatus, row_from, row_of
@@ -31,7 +33,17 @@ def test_a_row_says_why_it_has_no_peak():
     row = row_of(0, {}, result)
     assert (row.holds, row.outputs["peak"].value) == (True, None)
     assert row.message == "the peak pressure is infinite in punch"
-    assert "; stress is infinite at corners or edges, von_mises is" in row_of(0, {}, result, stresses=True).message
+    row = row_of(0, {}, result, stresses=True)
+    assert row.outputs["von_mises"].value is None
+    assert row.message.endswith("; von Mises stress grows up to an infinite one: it has no largest value")
+
+
+@pytest.mark.slow
+def test_a_row_says_what_its_largest_stress_leaves_out():
+    """Where three stops press a body, its sharp corners are elsewhere."""
+    row = row_of(0, {}, bemcontact.solve(bemcontact.load(MODELS / "gallery" / "three_zones.yaml")), stresses=True)
+    assert row.outputs["von_mises"].value is not None
+    assert row.message.endswith("stress is infinite at corners or edges, von_mises is the largest maximum elsewhere")
 
 
 def test_a_row_has_the_notes_on_what_its_error_bars_do_not_include():
