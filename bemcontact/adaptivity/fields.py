@@ -266,8 +266,18 @@ class MeshDifference:
 
     @cached_property
     def energy(self) -> Array:
-        """Change (m,) of the energy of each coarse element, h/G ∫|Δt|² + G h ∫|Δu'|², per thickness [p L²]."""
-        return self._energy(*((answer.displacement, answer.traction) for answer in self.pair))
+        """Change (m,) of the energy of each coarse element, h/G ∫|Δt|² + G h ∫ε², per thickness [p L²].
+
+        ε is the change of the strain along the boundary. That of rotations is no error of the element: an unloaded arm
+        turns as a whole by the errors of elements elsewhere.
+        """
+        return self._energy(*self._fields, rotations=False)
+
+    @property
+    def _fields(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Displacement and traction of the coarse and of the fine answer."""
+        one, two = self.pair
+        return (one.displacement, one.traction), (two.displacement, two.traction)
 
     @cached_property
     def force_errors(self) -> Array:
@@ -279,11 +289,14 @@ class MeshDifference:
         """
         errors = np.zeros((len(self.coarse.in_zone), len(self.coarse.mesh.elements)))
         for own, *both in zip(errors, *(answer.force_influence() for answer in self.pair), strict=False):
-            own += np.sqrt(self.energy * self._energy(*both))
+            own += np.sqrt(self._energy(*self._fields) * self._energy(*both))
         return errors
 
-    def _energy(self, one: tuple[Array, Array], two: tuple[Array, Array]) -> Array:
-        """`energy` of the difference of two fields (displacement, traction), on the coarse and the fine mesh."""
+    def _energy(self, one: tuple[Array, Array], two: tuple[Array, Array], *, rotations: bool = True) -> Array:
+        """`energy` of the difference of two fields (displacement, traction), on the coarse and the fine mesh.
+
+        With `rotations`, ε is the whole change Δu' along the boundary: they do work in other fields.
+        """
         mesh, weights = self.fine.mesh, self.fine.weights
         shear = self.fine.body.shear_moduli[:, None]
         length = weights.sum(axis=1)
@@ -291,7 +304,10 @@ class MeshDifference:
         xi, _ = reference_element.gauss_legendre(3)
         slope = reference_element.derivatives(xi) @ (two[0] - halves(one[0]))
         tangents = mesh.tangents_at(xi)
+        along = tangents / np.hypot(tangents[..., 0], tangents[..., 1])[..., None]
         rate = slope / np.hypot(tangents[..., 0], tangents[..., 1])[..., None]
+        if not rotations:
+            rate = np.sum(rate * along, axis=2, keepdims=True)
         both = (traction**2).sum(axis=2) / shear + shear * (rate**2).sum(axis=2)
         return _by_pairs(2 * length * (weights * both).sum(axis=1))
 

@@ -877,6 +877,24 @@ def test_one_contact_is_two_with_the_parts_of_its_edge(turned):
 
 
 @pytest.mark.slow
+def test_free_arms_of_a_thin_layer_are_straight():
+    """Statics: nothing bends them. Errors of elements under the load lift their ends, and are to be found."""
+    layer = polygon(bottom=(-50, 0), right=(50, 0), east=(50, 1), top=(5, 1), west=(-5, 1), left=(-50, 1))
+    bodies = {
+        "layer": elastic(layer, {"top": {"pressure": 10.0}}, 2e5),
+        "low": elastic(block((-60, 60), (-40, 0)), HELD, 2e5),
+    }
+    result = solved(bodies, 0.01, c=["layer/bottom", "low/top"])
+    assert result.holds
+    assert result.boundary is not None
+    bottom = result.boundary.edge == result.boundary.edge_names.index("layer/bottom")
+    x, lift = result.boundary.points[bottom][:, 1, 0], result.boundary.displacement[bottom][:, 1, 1]
+    arm = x > 10
+    away = lift[arm] - np.polyval(np.polyfit(x[arm], lift[arm], 1), x[arm])
+    assert abs(away).max() < 0.01 * lift.max()
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("named", [False, True])
 @pytest.mark.parametrize("exchanged", [False, True])
 def test_rollers_between_plates_that_bend_slide_by_an_amount_that_is_not_known(exchanged, named):
