@@ -138,6 +138,10 @@ class BodyContact(SpecModel):
             "gap is the clearance that is added to the gap as drawn; a negative one is an interference",
         ),
         **dict.fromkeys(("friction", "friction_coefficient", "mu"), "contact is without friction; leave it out"),
+        **dict.fromkeys(
+            ("master", "slave", "primary", "secondary", "bodies", "edges", "sides", "pair", "surfaces"),
+            "both sides are between: [BODY/EDGE, BODY/EDGE], or two bodies",
+        ),
     }
 
     between: Sides

@@ -253,8 +253,12 @@ class Condition(SpecModel):
         **dict.fromkeys(("hinge", "pin", "pinned"), "hold a short edge by fixed: true; no point can bear a force"),
         **dict.fromkeys(("springs", "foundation", "stiffness", "winkler", "bedding"), SPRING),
         **dict.fromkeys(
-            ("ux", "uy", "u", "u_x", "u_y", "fixed_x", "fixed_y", "bc", "type"),
+            ("x", "y", "ux", "uy", "u", "u_x", "u_y", "fixed_x", "fixed_y", "bc", "type"),
             "what holds an edge is displacement: {x: 0}, fixed: true or symmetry: x",
+        ),
+        **dict.fromkeys(
+            ("moment", "bending_moment", "torque"),
+            "a moment is a traction that changes along the edge, or a pair of forces; on a tool it stands under force",
         ),
         "free": "an edge without a condition is free; leave it out",
     }

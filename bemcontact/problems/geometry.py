@@ -103,6 +103,8 @@ class _EdgeBase(SpecModel):
         "r": "write radius",
         "start_tangent": "write start_direction",
         "end_tangent": "write end_direction",
+        **dict.fromkeys(("from", "p1", "first"), "write start"),
+        **dict.fromkeys(("to", "p2", "last"), "write end"),
     }
 
     name: Name

@@ -85,6 +85,11 @@ def test_words_of_others_at_the_top_are_led_to_their_places(word: str, words: st
         ({"contact_zones": {"foot": {"friction": 0.1}}}, "contact is without friction"),
         ({"contact_zones": {"foot": {"target": {}}}}, "write surface: {kind: plane"),
         ({"conditions": {"left": {"ux": 0}}}, "what holds an edge is displacement: {x: 0}"),
+        ({"conditions": {"left": {"x": 0, "y": 0}}}, "what holds an edge is displacement: {x: 0}"),
+        ({"conditions": {"left": {"moment": 5}}}, "a moment is a traction that changes along the edge"),
+        ({"boundary": {"outer": [{"name": "a", "from": [0, 0]}]}}, "unknown key 'from'; write start"),
+        ({"contacts": {"c": {"master": "a", "slave": "b"}}}, "both sides are between: [BODY/EDGE, BODY/EDGE]"),
+        ({"material": {"thermal_expansion": 1e-5}}, "belongs to the load: loads.temperature.expansion"),
         (
             {"loads": {"top": {"pressure": 20}}},
             "there are: gravity, centrifugal, temperature; loads on edges are in conditions",
