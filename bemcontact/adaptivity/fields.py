@@ -266,12 +266,12 @@ class MeshDifference:
 
     @cached_property
     def energy(self) -> Array:
-        """Change (m,) of the energy of each coarse element, h/G ∫|Δt|² + G h ∫ε², per thickness [p L²].
+        """Change (m,) of the energy of each coarse element, h/G ∫|Δt|² + G h ∫|Δu' - ω n|², per thickness [p L²].
 
-        ε is the change of the strain along the boundary. That of rotations is no error of the element: an unloaded arm
-        turns as a whole by the errors of elements elsewhere.
+        ω is the change of its mean rotation. This is no error of the element: an unloaded arm turns as a whole by the
+        errors of elements elsewhere.
         """
-        return self._energy(*self._fields, rotations=False)
+        return self._energy(*self._fields, turned=False)
 
     @property
     def _fields(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
@@ -292,10 +292,10 @@ class MeshDifference:
             own += np.sqrt(self._energy(*self._fields) * self._energy(*both))
         return errors
 
-    def _energy(self, one: tuple[Array, Array], two: tuple[Array, Array], *, rotations: bool = True) -> Array:
+    def _energy(self, one: tuple[Array, Array], two: tuple[Array, Array], *, turned: bool = True) -> Array:
         """`energy` of the difference of two fields (displacement, traction), on the coarse and the fine mesh.
 
-        With `rotations`, ε is the whole change Δu' along the boundary: they do work in other fields.
+        Mean rotations of elements count where they are `turned`: they do work in other fields.
         """
         mesh, weights = self.fine.mesh, self.fine.weights
         shear = self.fine.body.shear_moduli[:, None]
@@ -304,10 +304,12 @@ class MeshDifference:
         xi, _ = reference_element.gauss_legendre(3)
         slope = reference_element.derivatives(xi) @ (two[0] - halves(one[0]))
         tangents = mesh.tangents_at(xi)
-        along = tangents / np.hypot(tangents[..., 0], tangents[..., 1])[..., None]
         rate = slope / np.hypot(tangents[..., 0], tangents[..., 1])[..., None]
-        if not rotations:
-            rate = np.sum(rate * along, axis=2, keepdims=True)
+        if not turned:
+            normals = np.stack([tangents[..., 1], -tangents[..., 0]], axis=2)
+            normals /= np.hypot(tangents[..., 0], tangents[..., 1])[..., None]
+            mean = _by_pairs((weights * np.sum(rate * normals, axis=2)).sum(axis=1)) / _by_pairs(length)
+            rate = rate - np.repeat(mean, 2)[:, None, None] * normals
         both = (traction**2).sum(axis=2) / shear + shear * (rate**2).sum(axis=2)
         return _by_pairs(2 * length * (weights * both).sum(axis=1))
 
