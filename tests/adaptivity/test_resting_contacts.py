@@ -86,7 +86,10 @@ def test_a_path_has_the_pairs_of_its_end():
 
 @pytest.mark.parametrize(("clearance", "holds"), [(0.03, True), (0.12, False)])
 def test_load_cases_that_share_their_pairs_say_what_that_changes(clearance: float, holds: bool):
-    """A peak is off by half the clearance over the radius: 1.5 % is noted, and from 5 % on the result is withheld."""
+    """A peak is off by half the clearance over the radius: 1.5 % is noted, and from 5 % on the result is withheld.
+
+    The change by a second solution, which takes the deformation along, says the same.
+    """
     lighter, heavier = (
         {"bodies": {"pin": {"gravity": {"density": density, "acceleration": [0, -1]}}}} for density in (0.1, 0.2)
     )
@@ -94,7 +97,11 @@ def test_load_cases_that_share_their_pairs_say_what_that_changes(clearance: floa
     for result in bemcontact.solve_cases(spec).results.values():
         assert result.holds is holds
         told = [*result.notes, result.penetration.words if result.penetration else ""]
-        assert any("points opposite to each other were found" in words for words in told)
+        words = (
+            "points opposite to each other were found",
+            "with the gaps after this motion, the peak pressure there falls",
+        )
+        assert any(item in text for item in words for text in told)
 
 
 def rounded_punch(slide=0.0, *, drawn=0.0):
