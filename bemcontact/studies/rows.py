@@ -112,7 +112,7 @@ def _without_peak(result: Result) -> str:
 def _infinite_stress(result: Result) -> str:
     """Say if stress is infinite somewhere; empty if it is not."""
     infinite = len(result.largest_stresses().singular)
-    return "stress is infinite at corners or edges, von_mises is the largest value elsewhere" if infinite else ""
+    return "stress is infinite at corners or edges, von_mises is the largest maximum away from them" if infinite else ""
 
 
 def _beyond_bars(result: Result) -> str:
