@@ -167,15 +167,22 @@ def _headline_of_cases(cases: Mapping[str, Result], units: Units) -> Iterator[tu
 def _most_stressed(cases: Mapping[str, Result], units: Units) -> Iterator[tuple[str, str, str]]:
     """The largest von Mises stress of all load cases."""
     largest = {name: result.largest_stresses() for name, result in cases.items() if result.boundary is not None}
-    for name, peaks in largest.items():
-        if len(peaks.singular):
-            yield "Largest von Mises stress", "infinite", f"at corners or edges{name and f', under {name}'}"
-            return
+    infinite = next((name for name, peaks in largest.items() if len(peaks.singular)), None)
     known = [(peak, name) for name, peaks in largest.items() for peak in (peaks.inside, peaks.boundary) if peak]
+    value, where = "", ""
     if known:
         peak, name = max(known, key=lambda item: item[0].value)
-        where = "on the boundary" if peak is largest[name].boundary else "inside"
-        yield "Largest von Mises stress", _stress(peak, units), f"{where}{name and f', under {name}'}"
+        place = "on the boundary" if peak is largest[name].boundary else "inside"
+        value, where = _stress(peak, units), f"{place}{name and f', under {name}'}"
+    if infinite is not None:
+        elsewhere = f"; largest maximum away from them {value} {where}" if known else ""
+        yield (
+            "Largest von Mises stress",
+            "infinite",
+            f"at corners or edges{infinite and f', under {infinite}'}{elsewhere}",
+        )
+    elif known:
+        yield "Largest von Mises stress", value, where
 
 
 def _stresses(result: Result, units: Units) -> Iterator[tuple[str, str, str]]:

@@ -114,9 +114,8 @@ def _infinite_stress(result: Result) -> str:
     largest = result.largest_stresses()
     if grows(largest):
         return "von Mises stress grows up to an infinite one: it has no largest value"
-    return "stress is infinite at corners or edges, von_mises is the largest maximum elsewhere" * bool(
-        len(largest.singular)
-    )
+    infinite = len(largest.singular)
+    return "stress is infinite at corners or edges, von_mises is the largest maximum away from them" if infinite else ""
 
 
 def _beyond_bars(result: Result) -> str:
