@@ -6,6 +6,7 @@ in no zone of it.
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
@@ -88,12 +89,12 @@ def penetration(
         notes += () if worst else _excused(gaps, zone, found.excused, found.xi, allowed)
         notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
     if worst is None or not worst.paired:  # an edge that is not in a zone may be there through the body itself
-        worst = _through_itself(gaps) or worst
+        worst = _through_itself(gaps, body) or worst
     misplaced, said = (None, ()) if worst else placement(gaps, body, contact, solution, nearby, infinite)
     return worst or misplaced, (*notes, *said)
 
 
-def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
+def _through_itself(gaps: SurfaceGaps, body: Body) -> Penetration | None:
     """Find two parts of the displaced boundary that cross: chords of half elements first, then finer ones.
 
     A thin hole may turn inside out as a whole, and cross nowhere.
@@ -103,6 +104,7 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
     bodies = [gaps.problem.part_of(mesh.edge_names[mesh.edge[elements[0]]]) for elements in loops]
     problem = gaps.problem
     stated = {frozenset(problem.sides_of(name)) for name in (*problem.contacts, *problem.bonded)}
+    stated |= _bonded_at_a_place(body)
     drawn, chords = (
         [values[elements][:, :2].reshape(-1, 2) for elements in loops]
         for values in (state.points, state.points + state.displacement)
@@ -158,6 +160,17 @@ def _through_itself(gaps: SurfaceGaps) -> Penetration | None:
             "in the middle of the slot, if it is symmetric."
         ),
     )  # fmt: skip
+
+
+def _bonded_at_a_place(body: Body) -> set[frozenset[str]]:
+    """Pairs of bodies that meet in one place where bonds with others hold both, as two of four quarters do."""
+    tied, parts = body.points.tied, body.problem.parts
+    of_node = np.zeros(len(tied), int)
+    for number, part in enumerate(body.mesh.parts):
+        of_node[part.nodes] = number
+    places = np.flatnonzero(np.bincount(tied) > 2)
+    names = ([parts[number].name for number in of_node[tied == place].tolist()] for place in places)
+    return {frozenset(pair) for meeting in names for pair in combinations(meeting, 2)}
 
 
 def _swallowed(

@@ -78,21 +78,27 @@ THREE = {
     "b": {"foot": (-4, 1), "wall": (1, 1), "top": (1, 4), "left": (-4, 4)},
     "c": {"step": (1, 1), "right": (4, 1), "top": (4, 4), "wall": (1, 4)},
 }
+FOUR = {
+    "a": {"bottom": (-4, -4), "wall": (1, -4), "step": (1, 1), "left": (-4, 1)},
+    "b": {"under": (1, -4), "right": (4, -4), "foot": (4, 1), "wall": (1, 1)},
+    "c": {"step": (-4, 1), "beam": (1, 1), "top": (1, 4), "left": (-4, 4)},
+    "d": {"foot": (1, 1), "right": (4, 1), "top": (4, 4), "beam": (1, 4)},
+}
 """Outlines whose interfaces have a corner, or meet at a place: edges of one name coincide."""
 FLOOR = {"floor": {"edges": "a/bottom", "surface": {"kind": "plane", "point": [0, -4], "normal": [0, 1]}}}
 
 
 @pytest.mark.parametrize("loose", ["", "wall"])
 @pytest.mark.parametrize("orders", list(product((1, -1), repeat=3)))
-@pytest.mark.parametrize("outlines", [STEPPED, THREE], ids=["a corner", "three bodies"])
+@pytest.mark.parametrize("outlines", [STEPPED, THREE, FOUR], ids=["a corner", "three bodies", "four bodies"])
 def test_a_fluid_around_a_corner_of_an_interface_presses_uniformly(outlines, orders, loose):
-    """Whichever side of each bond is the first, and whether or not the last one is a contact instead."""
+    """Whichever side of each bond is the first, and whether or not one is a contact instead."""
     sides = {}
     for body, edges in outlines.items():
-        for edge in {"foot", "step", "wall"} & {*edges}:
+        for edge in {"beam", "foot", "step", "wall"} & {*edges}:
             sides.setdefault(edge, []).append(f"{body}/{edge}")
-    pairs = {edge: sides[edge][::order] for edge, order in zip(sorted(sides), orders, strict=False)}
-    fluid = {"top": {"pressure": PRESSURE}, "left": {"pressure": PRESSURE}, "right": {"pressure": PRESSURE}}
+    pairs = {edge: sides[edge][::order] for edge, order in zip(sorted(sides), (*orders, 1), strict=False)}
+    fluid = {edge: {"pressure": PRESSURE} for edge in ("top", "left", "right", "under")}
     spec = stated(
         name="corner",
         bodies={
