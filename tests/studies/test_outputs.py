@@ -54,6 +54,7 @@ def test_outputs_may_be_one_text_as_on_the_command_line():
     assert chosen("peak, force.wall", ZONES) == chosen(["peak", "force.wall"], ZONES)
 
 
+@pytest.mark.slow
 def test_largest_stresses_are_outputs_if_they_are_asked_for():
     """Below the roller the maximum inside is larger than that on the boundary; each with its error, absolute."""
     problem = bemcontact.load(MODELS / "gallery" / "hertz_small.yaml")
