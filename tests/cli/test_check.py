@@ -146,5 +146,7 @@ def test_check_draws_what_can_be_read_of_a_refused_problem(
 def test_check_draws_nothing_without_a_sound_boundary(block: Path, tmp_path: Path):
     for old, new in (("start: [40, 0]", "start: [40, 99]"), ("elements: 4", "elements: 4000000"), ("boundary:", "a:")):
         block.write_text(BLOCK.replace(old, new), encoding="utf-8")
-        assert run("check", block, "--figure", tmp_path / "picture.svg").exit_code == 2
+        answer = run("check", block, "--figure", tmp_path / "picture.svg")
+        assert answer.exit_code == 2
+        assert "picture.svg is not written" in " ".join(answer.stderr.split())
         assert not (tmp_path / "picture.svg").exists()

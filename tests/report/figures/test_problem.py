@@ -319,13 +319,16 @@ def test_of_many_edges_those_that_matter_have_their_names():
     """A comb of 30 teeth on a long bar: the names of its short free edges are left out, and nothing overlaps."""
     teeth = [(x, y) for i in range(30) for x, y in ((50 - i, 1), (49.5 - i, 1), (49.5 - i, 0.5), (49 - i, 0.5))]
     corners = [(0, 0), (200, 0), (200, 100), (100, 100), *teeth]
-    steel = {"young_modulus": 1000, "poisson_ratio": 0.3}
-    problem = Problem(
-        name="comb", material=steel,
-        boundary={"outer": [{"name": f"edge {i}", "start": at, "elements": 1} for i, at in enumerate(corners)]},
-        conditions={"edge 0": {"displacement": {"x": 0, "y": 0}}, "edge 6": {"pressure": 1}},
-        contact_zones={"foot": {"edges": "edge 4", "surface": {"kind": "plane", "point": (0, 1), "normal": (0, -1)}}},
-    )  # fmt: skip
+    data = {
+        "name": "comb",
+        "material": {"young_modulus": 1000, "poisson_ratio": 0.3},
+        "boundary": {"outer": [{"name": f"edge {i}", "start": at, "elements": 1} for i, at in enumerate(corners)]},
+        "conditions": {"edge 0": {"displacement": {"x": 0, "y": 0}}, "edge 6": {"pressure": 1}},
+        "contact_zones": {
+            "foot": {"edges": "edge 4", "surface": {"kind": "plane", "point": (0, 1), "normal": (0, -1)}}
+        },
+    }
+    problem = Problem(**data)  # pyright: ignore[reportArgumentType]
     axes = only_axes(figures.figure_of_problem(problem, mesh.build(problem)))
     names = {text.get_text().split("\n")[0] for text in axes.texts}
     assert names >= {"edge 0", "edge 1", "edge 2", "edge 3", "edge 4", "edge 6"}
