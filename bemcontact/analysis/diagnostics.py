@@ -194,7 +194,8 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
 
     On a smooth boundary both are possible. At a corner with a free edge beyond the zone the pressure is bounded if the
     angle is at most a right one: the body and its mirror image in the rigid surface then form no notch (Williams 1952).
-    A zone that ends opposite to a corner of the other body ends as that body does.
+    A zone that ends opposite to a corner of the other body ends as that body does. It does not end at a bond with a
+    body beside it that has a zone there, too.
     """
     mesh, points, angles = body.mesh, body.points, body.mesh.inner_angles
     in_zone, ends = points.in_zone, np.zeros(len(mesh.nodes), bool)
@@ -204,6 +205,8 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     for i in np.flatnonzero(touching & ends[points.node]):
         node, other = points.node[i], points.opposite.node[i]
         if other >= 0 and abs(angles[other] - np.pi) >= CORNER:
+            continue
+        if np.isin(points.tied[mesh.elements[in_zone]], points.tied[node]).any(axis=1).sum() > 1:
             continue
         x, y = mesh.place(mesh.nodes[node])
         reached = f"contact reaches the end of the zone '{_zone(body, i)}' at ({x:.5g}, {y:.5g})"

@@ -134,16 +134,13 @@ class ProbedBody:
 
 
 def elastic_displacement(body: Body, state: BoundaryState) -> Array:
-    """Displacement (N, 2) [L] of the nodes less the free motions of each body that are nearest to it."""
+    """Displacement (N, 2) [L] of the nodes less the nearest free motions, in which bonded bodies move together."""
     mesh, displacement = body.mesh, np.zeros_like(body.mesh.nodes)
     displacement[mesh.elements] = state.displacement
-    lengths = np.sqrt(_nodal_lengths(mesh))
-    for part, motions in zip(mesh.parts, body.motions, strict=True):
-        own, root = displacement[part.nodes], np.repeat(lengths[part.nodes], 2)[:, None]
-        free = motions.displacement(part.mesh.nodes).reshape(len(root), -1)
-        nearest = np.linalg.lstsq(root * free, root[:, 0] * own.ravel())[0]
-        displacement[part.nodes] = own - (free @ nearest).reshape(-1, 2)
-    return displacement
+    root = np.repeat(np.sqrt(_nodal_lengths(mesh)), 2)
+    free = body.free.displacement(mesh).reshape(len(root), -1)
+    nearest = np.linalg.lstsq(root[:, None] * free, root * displacement.ravel())[0]
+    return displacement - (free @ nearest).reshape(-1, 2)
 
 
 def _nodal_lengths(mesh: Mesh) -> Array:

@@ -15,6 +15,7 @@ from bemcontact.arrays import Array, IntArray
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
+from bemcontact.bem.bonds import bonded_elements
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.loading import particular_solutions
 from bemcontact.bem.mesh import Mesh
@@ -46,8 +47,8 @@ def second_order(body: Body, boundary: BoundaryState, initial_gap: Array) -> Jud
     `initial_gap` (n,) [L] is that of the contact points.
     """
     mesh, every = body.mesh, np.arange(len(body.mesh.elements))
-    thickness, facing, local = across(mesh)
-    size = np.repeat([part.mesh.size for part in mesh.parts], [len(part.mesh.elements) for part in mesh.parts])
+    thickness, facing, local = across(body)
+    size = _sizes_of_wholes(body)
     slender = thickness < size / SLENDER
     if not slender.any():
         return Judgment()
@@ -75,7 +76,7 @@ def _probed(body: Body, boundary: BoundaryState, moves: bool, strut: float, stra
             stiffer = 1 / displacements.displacement if given else forces.force
             of_force, zone = abs(forces.force - 1) if given else 0.0, [*body.problem.zones][i]
         if strut > NOTICED:
-            part = min(strut, probed.critical(PROBE * float(across(body.mesh)[0].min())))
+            part = min(strut, probed.critical(PROBE * float(across(body)[0].min())))
     except BemContactError:
         return Judgment()  # contact does not hold the displaced body, which `placement` finds
     found = SecondOrder(
@@ -183,24 +184,41 @@ def _wrong(stiffer: float) -> str:
     )
 
 
-def across(mesh: Mesh) -> tuple[Array, IntArray, Array]:
+def across(body: Body) -> tuple[Array, IntArray, Array]:
     """Thickness (m,) [L] at the middle of each element: the distance through the body to the boundary that faces it.
 
-    It is infinite where none does. Each body is looked at by itself. Then the element that faces it (m,), and the local
-    coordinate (m,) of the place opposite, which may be in the next element.
+    It is infinite where none does. Each body is looked at by itself, and bonded ones as one, inside which bonded
+    elements are. Then the element that faces it (m,), and the local coordinate (m,) of the place opposite, which may be
+    in the next element.
     """
+    mesh, outer, whole = body.mesh, np.ones(len(body.mesh.elements), bool), _wholes(body)
+    outer[bonded_elements(body.problem, mesh)[0]] = False
     at, normals, tangents = mesh.nodes[mesh.elements[:, 1]], mesh.normals[:, 1], mesh.tangents[:, 1]
     thickness, facing, local = np.full(len(at), np.inf), np.arange(len(at)), np.zeros(len(at))
-    of_part = np.repeat(np.arange(len(mesh.parts)), [len(part.mesh.elements) for part in mesh.parts])
-    for i, (place, normal) in enumerate(zip(at, normals, strict=True)):
-        away = place - at
-        inward, distance = away @ normal, np.hypot(*away.T)
-        faces = (inward > 0) & (inward >= ACROSS * distance) & (normals @ normal < OPPOSED) & (of_part == of_part[i])
+    for i in np.flatnonzero(outer).tolist():
+        away = at[i] - at
+        inward, distance = away @ normals[i], np.hypot(*away.T)
+        faces = (inward > 0) & (inward >= ACROSS * distance) & (normals @ normals[i] < OPPOSED)
+        faces &= outer & (whole == whole[i])
         if faces.any():
             j = facing[i] = np.argmin(np.where(faces, distance, np.inf))
             thickness[i] = distance[j]
             local[i] = np.clip(away[j] @ tangents[j] / (tangents[j] @ tangents[j]), -BESIDE, BESIDE)
     return thickness, facing, local
+
+
+def _wholes(body: Body) -> IntArray:
+    """Number (m,) of the body of each element; bonded bodies have one."""
+    names, groups = [part.name for part in body.problem.parts], body.problem.bonded_groups
+    numbers = [names.index(groups.get(name, name)) for name in names]
+    return np.repeat(numbers, [len(part.mesh.elements) for part in body.mesh.parts])
+
+
+def _sizes_of_wholes(body: Body) -> Array:
+    """Diameter (m,) [L] of the bounding box of the body of each element; bonded bodies are one."""
+    whole, points = _wholes(body), body.mesh.nodes[body.mesh.elements]
+    sizes = {number: np.hypot(*np.ptp(points[whole == number].reshape(-1, 2), axis=0)) for number in {*whole.tolist()}}
+    return np.array([sizes[number] for number in whole.tolist()])
 
 
 def thermal_displacement(body: Body) -> Array:

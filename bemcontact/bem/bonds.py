@@ -58,7 +58,7 @@ class BondedPoints:
 
         There is none along an axis along which conditions hold both nodes. `tied` (N,) is that of `ContactPoints`.
         """
-        element, across = _bonded_elements(problem, mesh)
+        element, across = bonded_elements(problem, mesh)
         nodes = np.stack([mesh.elements[element], mesh.elements[across, ::-1]], axis=-1)
         both, pair = np.unique(np.sort(nodes).reshape(-1, 2), axis=0, return_inverse=True)
         pair = pair.reshape(nodes.shape[:2])
@@ -112,7 +112,7 @@ class BondedPoints:
         )
 
 
-def _bonded_elements(problem: Problem, mesh: Mesh) -> tuple[IntArray, IntArray]:
+def bonded_elements(problem: Problem, mesh: Mesh) -> tuple[IntArray, IntArray]:
     """Elements (k,) of both sides of all bonds, and those across."""
     facing = [mesh.facing[name] for name in problem.bonded]
     own = np.concatenate([np.flatnonzero(across >= 0) for across in facing] or [np.zeros(0, int)])

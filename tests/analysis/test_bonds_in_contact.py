@@ -95,6 +95,24 @@ def test_a_cut_inside_contact_changes_nothing(ram, cut, exchanged):
 
 
 @pytest.mark.slow
+def test_a_slanted_cut_inside_contact_is_told_by_no_note():
+    """Its acute part is no strut that buckles, and its obtuse one has no infinite pressure: the block is one."""
+    cut = {
+        "l": elastic(polygon(cut=(-6, -3), top=(0.2, 0), left=(-6, 0))),
+        "r": elastic(polygon(bottom=(-6, -6), right=(6, -6), top=(6, 0), cut=(0.2, 0), left=(-6, -3)), CLAMPED),
+    }
+    contacts = {name: {"between": [top, "ram/rim"]} for name, top in (("c", "l/top"), ("d", "r/top"))}
+    tools = {"ram": {"zones": ["c", "d"], "force": {"y": -20}}}
+    halves = stated(
+        name="slanted", bodies={**cut, "ram": RAMS["rigid"]}, contacts=contacts, bonded={"g": ["l/cut", "r/cut"]},
+        tools=tools,
+    )  # fmt: skip
+    result = bemcontact.solve(halves, accuracy=0.02)
+    assert result.holds
+    assert not result.notes
+
+
+@pytest.mark.slow
 def test_sides_may_be_exchanged_at_a_cut_between_unlike_bodies():
     """Pairs on both sides of the bond have common normals by one share, so that they neither cross nor leave a gap."""
     forces = []
