@@ -71,7 +71,8 @@ class BodySpec(SpecModel):
     loads: Loads = Loads()
     """The loads on the volume of this body."""
     copy_of: Name | None = None
-    """The name of another body, whose material and boundary this one has too. Conditions and loads are not copied."""
+    """The name of another body, whose material and boundary this one has too. Conditions and loads are not copied:
+    it has its own, or {}."""
     shift: Point = (0.0, 0.0)
     """The displacement [x, y] of a copy, after its rotation."""
     rotate: Number = 0.0
@@ -106,6 +107,12 @@ class BodySpec(SpecModel):
         elif self.material is None:
             raise invalid("the material is missing; give young_modulus and poisson_ratio, or the name of a material")
         return self
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the keys of a spec that state the same; a copy of a body that has them says so if it has none."""
+        stated = super().to_dict()
+        none = [] if self.copy_of is None else [key for key in ("conditions", "loads") if key in self.model_fields_set]
+        return stated | {key: {} for key in none if key not in stated}
 
 
 BETWEEN = "expected two bodies, or two edges as BODY/EDGE, such as [roller/under, rail/top]"

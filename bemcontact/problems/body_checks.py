@@ -94,13 +94,10 @@ def _copy_issues(problem: StatedBodies, name: str, body: BodySpec) -> Iterator[I
         yield Issue(path=path, message=f"'{body.copy_of}' is a copy itself; name its original '{of}'")
     else:
         original = problem.bodies[body.copy_of]
-        for key, its, own in (
-            ("conditions", original.conditions, body.conditions),
-            ("loads", original.loads != Loads(), body.loads != Loads()),
-        ):
-            if its and not own:
+        for key, its in (("conditions", original.conditions), ("loads", original.loads != Loads())):
+            if its and key not in body.model_fields_set:
                 what = f"'{body.copy_of}' has {key}, and a copy does not take them over"
-                yield Issue(path=path, message=f"{what}; state those of '{name}', or make it a body of its own")
+                yield Issue(path=path, message=f"{what}; state those of '{name}', or {key}: {{}} if it has none")
         if original.rigid and (body.conditions or body.loads != Loads()):
             yield Issue(
                 path=path, message=f"'{body.copy_of}' is rigid, so that its copy has no conditions and no loads"

@@ -95,7 +95,8 @@ MISTAKES = [
     (with_copy(COPY.replace("of: up", "of: low")), "13:18: bodies.low.copy_of", "copy of itself"),
     (with_copy(COPY.replace("shift: [0, -1], ", "")), "13:18: bodies.low.copy_of",
      "'low' lies exactly on 'up'; give shift or rotate"),
-    (with_copy("{copy_of: up, shift: [0, -1]}"), "13:18: bodies.low.copy_of", "conditions…state those of 'low'"),
+    (with_copy("{copy_of: up, shift: [0, -1]}"), "13:18: bodies.low.copy_of",
+     "conditions…state those of 'low', or conditions: {}"),
     (with_copy(COPY.replace("of: up", "of: up, material: steel")), "13:8: bodies.low", "remove"),
 ]  # fmt: skip
 
@@ -113,6 +114,9 @@ def test_a_mistake_is_one_sentence_with_its_place(text, start, facts):
 def test_what_is_right_is_read():
     assert bemcontact.loads(SPEC).several
     assert bemcontact.loads(with_copy(COPY)).sides_of("face") == ("up", "low")
+    free = bemcontact.loads(with_copy("{copy_of: up, shift: [0, -1], conditions: {}}"))
+    assert not free.bodies["low"].conditions
+    assert bemcontact.loads(bemcontact.dumps(free)) == free
 
 
 def test_a_rigid_body_that_nothing_touches_is_refused():
