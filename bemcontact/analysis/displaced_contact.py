@@ -18,6 +18,9 @@ from bemcontact.problems.conditions import Condition
 from bemcontact.problems.curves import cross
 from bemcontact.problems.surface_lines import STEEP, Polyline
 
+FLAT = (0.0, 1.0)
+"""Parts of the first side in common normals where one side is flat."""
+
 
 class Displaced(NamedTuple):
     """Contact points after they have moved.
@@ -57,7 +60,7 @@ def displaced(
         other_body, surface, distance = points.opposite.node[own], gaps.surfaces[zone], there.gap
         across = _at_nodes(gaps, points)[other_body]
         elastic = isinstance(surface, BodySurface) and surface.elastic
-        if elastic and solution.pressure[own].any():
+        if isinstance(surface, BodySurface) and elastic and surface.share in FLAT and solution.pressure[own].any():
             carried = _carried_along(gaps, zone, points, contact, solution.pressure, displacement[own] - across)
             distance = np.where(other, there.gap, carried)
         beyond = distance / np.where(ridge, along, 1.0) - linear[own]
@@ -82,7 +85,7 @@ def displaced(
 def _carried_along(
     gaps: SurfaceGaps, zone: str, points: ContactPoints, contact: CondensedContact, pressure: Array, against: Array
 ) -> Array:
-    """Distance (k,) [L] of the points of a zone from the second elastic body, after displacements (k, 2) against it.
+    """Distance (k,) [L] of the points of a zone with a flat side, after displacements (k, 2) against the second body.
 
     Pressure slides along on that body and takes its deformation along. So each point has the displacement of its pair,
     not that of the place where it comes to, which may be beside all pressure. It only goes up or down the slope that
