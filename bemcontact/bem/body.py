@@ -403,7 +403,7 @@ def _rest_in_bore(body: Body) -> str:
     (bore,), (rim,) = np.array(list(middles[0])), np.array(list(middles[1]))
     force = body.motion_load(unit)[:2] @ body.factors
     moment = body.motion_load(unit.rotations([tuple(rim.tolist())]))[0] @ body.factors
-    if not force.any() or abs(moment) > 0:
+    if not force.any() or abs(moment) > BALANCED * problem.size * np.hypot(*force):
         return ""
     x, y = bore + np.hypot(*(rim - bore)) * force / np.hypot(*force) - rim
     return (
