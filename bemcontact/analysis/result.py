@@ -19,6 +19,7 @@ from bemcontact.assessment.footprint import (
 from bemcontact.assessment.penetration import Penetration
 from bemcontact.assessment.residual import Residuals
 from bemcontact.bem.boundary_values import BoundaryState
+from bemcontact.checks.attributes import ByName
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.record import (
@@ -203,7 +204,7 @@ class Result(Recorded, Tabular):
     @property
     def forces(self) -> dict[str, Pair]:
         """Force (x, y) of each contact on the body, or on the first of its two bodies, per thickness [p L]."""
-        return self.footprint.forces
+        return ByName("contact", self.footprint.forces)
 
     @property
     def certified(self) -> bool:
@@ -296,7 +297,8 @@ class Result(Recorded, Tabular):
         ProblemError
             The result is that of a condensed problem, which has no boundary.
         """
-        return {edge: replace(self._stresses.along(edge), labels=self._labels) for edge in self._stresses.edges}
+        stresses = {edge: replace(self._stresses.along(edge), labels=self._labels) for edge in self._stresses.edges}
+        return ByName("edge", stresses)
 
     @one_thread
     def largest_stresses(self) -> LargestStresses:

@@ -1,8 +1,13 @@
-"""Attributes that do not exist: an error that says where the quantity is."""
+"""Attributes and names that do not exist: an error that says where the quantity is, or which names there are."""
 
 import difflib
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
+
+from bemcontact.checks.arguments import shown
+from bemcontact.errors import ProblemError
+
+Value = TypeVar("Value")
 
 PLACES = {
     "footprint.peak.pressure": ("peak", "max_pressure", "maximum_pressure", "peak_pressure", "p_max", "pmax", "max"),
@@ -45,6 +50,22 @@ Words = Mapping[str, tuple[str, ...]]
 CLOSE = 0.8
 """Likeness of two words, from 0 to 1, from which one may be meant by the other: a slip of one or two letters."""
 OF_A_RESULT = "the result of bemcontact.solve has it as"
+
+
+class ByName(dict[str, Value]):
+    """Values by name, all of one kind of thing; `ProblemError` for a name that is not among them."""
+
+    def __init__(self, what: str, values: Mapping[str, Value]) -> None:
+        super().__init__(values)
+        self._what = what
+
+    def __missing__(self, name: object) -> Value:
+        """Refuse a name, and say which there are."""
+        raise ProblemError(f"there is no {self._what} {shown(name)}; there are: {', '.join(self) or 'none'}")
+
+    def __reduce__(self) -> tuple[type["ByName[Value]"], tuple[str, dict[str, Value]]]:
+        """Copies and pickles make it of its items."""
+        return type(self), (self._what, dict(self))
 
 
 class WithHints:

@@ -141,3 +141,16 @@ def test_an_error_within_a_property_is_its_own():
         _ = Broken().other
     with pytest.raises(AttributeError, match="Broken has no 'inner'"):
         _ = Broken().pressure
+
+
+def test_names_that_are_not_there_are_answered_with_those_that_are():
+    result = objects()["result"]
+    for values, name, there in (
+        (result.boundary_stress(), "web right", "there is no edge 'web right'; there are: rim, top, axis"),
+        (result.forces, "foots", "there is no contact 'foots'; there are: foot"),
+    ):
+        with pytest.raises(bemcontact.ProblemError, match=re.escape(there)):
+            values[name]
+        assert values.get(name) is None
+        assert name not in values
+        assert copy.deepcopy(values).keys() == pickle.loads(pickle.dumps(values)).keys() == values.keys()
