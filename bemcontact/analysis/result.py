@@ -204,7 +204,7 @@ class Result(Recorded, Tabular):
     @property
     def forces(self) -> dict[str, Pair]:
         """Force (x, y) of each contact on the body, or on the first of its two bodies, per thickness [p L]."""
-        return ByName("contact", self.footprint.forces)
+        return self.footprint.forces
 
     @property
     def certified(self) -> bool:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import computed_field
 
 from bemcontact.arrays import Array, IntArray
-from bemcontact.checks.attributes import PEAK, PLACE, WithHints, Words
+from bemcontact.checks.attributes import PEAK, PLACE, ByName, WithHints, Words
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import BALANCED
 from bemcontact.contact.solution import ContactSolution
@@ -154,6 +154,8 @@ def footprint(contact: CondensedContact, solution: ContactSolution, *, infinite:
     the rigid surface. There is no peak if that of a zone is known to be infinite.
     """
     carried = _LoadOnPoints(contact, solution.pressure, infinite)
+    forces = ((x, y) for x, y in contact.resultants(solution.pressure).tolist())
+    moments = contact.moments(solution.pressure).tolist()
     return Footprint(
         intervals=tuple(
             interval
@@ -162,11 +164,8 @@ def footprint(contact: CondensedContact, solution: ContactSolution, *, infinite:
         ),
         peak=None if infinite else _peak(contact, solution.pressure),
         resultant=_resultant(contact, solution.pressure),
-        forces={
-            name: (x, y)
-            for name, (x, y) in zip(contact.zone_names, contact.resultants(solution.pressure).tolist(), strict=True)
-        },
-        moments=dict(zip(contact.zone_names, contact.moments(solution.pressure).tolist(), strict=True)),
+        forces=ByName("contact", dict(zip(contact.zone_names, forces, strict=True))),
+        moments=ByName("contact", dict(zip(contact.zone_names, moments, strict=True))),
     )
 
 
