@@ -52,6 +52,7 @@ def test_the_frame_of_a_result_has_each_contact_point():
     assert frame.attrs["units"]["pressure"] == "MPa"
 
 
+@pytest.mark.slow
 def test_the_frame_of_load_cases_has_each_case():
     cases = items()["cases"]
     frame = cases.to_frame()

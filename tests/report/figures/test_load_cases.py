@@ -107,6 +107,7 @@ def test_stresses_have_one_panel_a_case_and_one_scale(name: str, measure: Stress
     assert drawn[0].levels[-1] == max(alone)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 def test_displacements_have_one_magnification(name: str):
     """It is the smallest that a case has alone, so that no body reaches far through a surface."""

@@ -315,6 +315,7 @@ def test_many_bodies_have_their_names_and_edges_where_there_is_room():
     assert not any("/" in text for text in texts)
 
 
+@pytest.mark.slow
 def test_of_many_edges_those_that_matter_have_their_names():
     """A comb of 30 teeth on a long bar: the names of its short free edges are left out, and nothing overlaps."""
     teeth = [(x, y) for i in range(30) for x, y in ((50 - i, 1), (49.5 - i, 1), (49.5 - i, 0.5), (49 - i, 0.5))]
@@ -337,6 +338,7 @@ def test_of_many_edges_those_that_matter_have_their_names():
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
 
 
+@pytest.mark.slow
 def test_load_cases_that_are_not_drawn_are_named_with_the_option():
     problem = made(HELD, **HELD_CASES)
     title = only_axes(figures.figure_of_problem(problem, mesh.build(problem))).get_title(loc="left")
