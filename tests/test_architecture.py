@@ -89,7 +89,7 @@ SLOW = {"cvxpy", "clarabel", "matplotlib", "numba", "meshio", "distributed", "py
 """Foreign packages that may be imported where they are used: slow ones, solvers, and those of the optional extras."""
 
 LATE = {
-    ("bem.body", "bem.deflected_contours"): "only these need equations, and check starts without",
+    ("bem.discretization", "bem.deflected_contours"): "only these need equations, and check starts without",
     ("analysis.result", "analysis.stress_of_bodies"): "stress is computed if it is asked for, and solve starts without",
     ("analysis.result", "analysis.stress_bars"): "likewise",
 }
@@ -347,7 +347,7 @@ GOOD = [
     (one_home_for_each_foreign_package, "bemcontact.report.figures", "from matplotlib.figure import Figure"),
     (imports_at_the_top, "bemcontact.formulations.qp3", "def f():\n    import cvxpy as cp"),
     (imports_at_the_top, "bemcontact.cli", "def f():\n    from bemcontact import analysis"),
-    (imports_at_the_top, "bemcontact.bem.body", "def f():\n    import bemcontact.bem.deflected_contours"),
+    (imports_at_the_top, "bemcontact.bem.discretization", "def f():\n    import bemcontact.bem.deflected_contours"),
     (arrows, "bemcontact.report.figures.problem", "from bemcontact.bem.mesh import Mesh"),
     (public_names_have_docstrings, "bemcontact.bem.mesh", "'A mesh.'\ndef _f(): ..."),
     (only_the_command_line_prints, "bemcontact.cli", "print(1)"),

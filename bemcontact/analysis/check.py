@@ -8,8 +8,10 @@ import numpy as np
 from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.analysis.spline_bulges import bulging
 from bemcontact.arrays import Array
-from bemcontact.bem.body import Body, body_of, deflections, each_case, ensure_held
+from bemcontact.bem.body import Body
+from bemcontact.bem.discretization import body_of, deflections
 from bemcontact.bem.mesh import Mesh, build
+from bemcontact.bem.support import each_case, ensure_held, idle_motion
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.problems import DeflectedContour, Problem
 from bemcontact.problems.boundary import size_of_edges
@@ -93,7 +95,7 @@ def _interference(problem: Problem, smallest_gaps: Mapping[str, float]) -> Itera
 
 def _idle(body: Body) -> Iterator[str]:
     """Note a motion that no load works in."""
-    if (idle := body.idle_motion) is not None:
+    if (idle := idle_motion(body)) is not None:
         yield f"the loads do no work in the {idle}, which only opens gaps: it is not determined"
 
 

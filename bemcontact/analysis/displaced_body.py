@@ -7,9 +7,10 @@ import numpy as np
 
 from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.arrays import Array
-from bemcontact.bem.body import Body, body_of
+from bemcontact.bem.body import Body
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.condense import boundary_state, condense
+from bemcontact.bem.discretization import body_of
 from bemcontact.bem.loading import Loading, ParticularSolution, particular_solutions
 from bemcontact.bem.mesh import Mesh
 from bemcontact.contact.solution import Status

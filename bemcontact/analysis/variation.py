@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, field
 
-from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import Condensation
 from bemcontact.bem.condense import condense as condense_body
+from bemcontact.bem.discretization import body_of
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import KeyPath, ProblemError
 from bemcontact.problems.key_path import parsed_path

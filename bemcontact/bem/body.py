@@ -6,62 +6,29 @@ from functools import cached_property
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, nonnegative_residual
+from bemcontact.arrays import Array
 from bemcontact.bem.bonds import BondedPoints
-from bemcontact.bem.candidates import contact_points
 from bemcontact.bem.contact_points import ContactPoints
-from bemcontact.bem.free_motions import (
-    BODY,
-    UNSEEN,
-    FreeMotions,
-    PlacedTools,
-    free_motions,
-    placed_tools,
-    steps_of_surfaces,
-)
-from bemcontact.bem.loading import Loading, case_loadings, combined, permanent_loading
-from bemcontact.bem.mesh import Mesh, build
+from bemcontact.bem.free_motions import UNSEEN, FreeMotions, PlacedTools, steps_of_surfaces
+from bemcontact.bem.loading import Loading, combined
+from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.outline import Outline
-from bemcontact.bem.rigid_motions import RigidMotions, free_rigid_motions, toward
+from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.unit_pressures import UnitPressures
-from bemcontact.checks.memory import ensure_memory
 from bemcontact.contact.free_motions import MotionAlgebra
 from bemcontact.contact.load_cases import BALANCED, Pinned
-from bemcontact.errors import Issue, ProblemError
-from bemcontact.problems.body_surface import BodySurface, BodyZone
-from bemcontact.problems.curves import CircularArc
+from bemcontact.problems.body_surface import BodyZone
 from bemcontact.problems.material import Material
 from bemcontact.problems.problem import Problem
-from bemcontact.problems.rigid_surface import Circle, DeflectedContour
 from bemcontact.problems.visibility import zone_edges
 from bemcontact.problems.way import Way
 
-TURNED = {
-    "plane": "its normal points to the body",
-    "circle": "the body is 'outside' or 'inside'",
-    "polyline": "the body is on the left of its points",
-    "spline": "the body is on the left of its points",
-}
-"""How each kind of surface is turned to the body."""
-
-PRESSED_IN = 0.1
-"""Interference over the size of a body up to which a disk is pressed into a hole, not drawn at a wrong place."""
-
-BEHIND = 1e-9
-"""Distance over the size of a body that is round-off, where the body lies behind a surface and touches it."""
-HELD_INSIDE = 1e-6
-"""Depth over the size of a body up to which it is drawn as held in a surface: that of coordinates with six digits."""
-MATRICES = 3
-"""Number of full matrices of all degrees of freedom that are in memory at the same time."""
 WEDGE = 0.02
 """Part of a rigid normal along which conditions leave a point free, up to which the point slides into a wedge."""
 MANY = 3
 """Motions held at zero up to which each has a note of its own."""
 ROUND_OFF = 1e-14
 """Normal displacement, over that of the motion, of a point that does not see it."""
-IDLE = 1e-3
-"""Least normal displacement, over that of the motion, of a motion that opens gaps. As a roller turns about nearly its
-middle, gaps on a coarse mesh seem to open, by less."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -243,22 +210,6 @@ class Body:
         none = largest <= BALANCED * self.pinned.total(self.factors, self.forces)
         return np.where(abs(R) > UNSEEN, R, 0.0), np.zeros_like(load) if none else load / largest
 
-    @cached_property
-    def idle_motion(self) -> str | None:
-        """A motion that opens gaps and closes none, and in which the loads do no work; None if there is none.
-
-        Its amplitude is not determined. Among the motions a with R a >= 0 in which the loads do no work, it is the one
-        nearest to Rᵀ1, which opens all gaps.
-        """
-        R, load = self.relative_load
-        if not load.size or (load.size == 1 and load.any()):
-            return None
-        workless = np.linalg.svd(load[None, :])[2][1:].T if load.any() else np.eye(load.size)
-        rates = R @ workless
-        rates[abs(rates) <= UNSEEN] = 0.0
-        part, opened = _opening(rates)
-        return self.seen.combined((workless @ part)[:, None]).describe()[0] if opened.any() else None
-
     @property
     def notes(self) -> tuple[str, ...]:
         """Decisions that a user should know."""
@@ -292,26 +243,6 @@ class Body:
             )
 
 
-def _ensure_before_surfaces(problem: Problem, mesh: Mesh) -> None:
-    """Refuse a rigid surface that has the whole body behind it, except a hole that a disk is pressed into.
-
-    A tool may be there before it is displaced.
-    """
-    with_tools = {zone for tool in problem.tools.values() for zone in tool.zones}
-    for name, zone in problem.zones.items():
-        if isinstance(zone.surface, DeflectedContour | BodySurface) or name in with_tools:
-            continue
-        gap = zone.surface.closest(mesh.nodes).gap
-        pressed_in = isinstance(zone.surface, Circle) and -gap.min() < PRESSED_IN * mesh.size
-        if gap.max() <= BEHIND * mesh.size and gap.min() < -BEHIND * mesh.size and not pressed_in:
-            depth = f"{-gap.min():.3g} {problem.units.length}".strip()
-            message = (
-                f"the whole body lies behind this surface, up to {depth} deep; move the surface, or turn it to the "
-                f"body: {TURNED[zone.surface.kind]}"
-            )
-            raise ProblemError(Issue(path=("contact_zones", name, "surface"), message=message))
-
-
 def _mixed_states(problem: Problem) -> Iterator[str]:
     """Note bodies in plane stress beside others in plane strain."""
     states: dict[str, list[str]] = {}
@@ -336,177 +267,3 @@ def _left_out(problem: Problem) -> Iterator[str]:
         if others:
             names, it = ", ".join(f"'{edge}'" for edge in others), "it has" if len(others) == 1 else "they have"
             yield f"{names} can see the surface of '{name}' and may not touch it, because {it} a condition"
-
-
-def body_of(problem: Problem) -> Body:
-    """Mesh a problem, spread its conditions over the mesh, and check whether contact can hold the body.
-
-    `ProblemError` if the whole body is behind a surface; if the loads that act pull the body off its support, move it
-    in a way that nothing holds, or do not press it on; or if the conditions of a deflected contour do not hold the
-    body. A problem with load cases of which none acts is meshed without this check.
-    """
-    mesh = build(problem)
-    outline = Outline(problem=problem, mesh=mesh)
-    ensure_memory(MATRICES * 8 * mesh.degrees_of_freedom**2)
-    _ensure_before_surfaces(problem, mesh)
-    permanent, cases = permanent_loading(problem, mesh), case_loadings(problem, mesh)
-    added = [loading.values for loading in cases]
-    points = contact_points(outline, permanent.values, deflections(problem, mesh), added)
-    tools = placed_tools(problem, points)
-    motions = tuple(free_rigid_motions(part.mesh, permanent.values.of_part(part), mesh.size / 2) for part in mesh.parts)
-    names = tuple(f"the body '{part.name}'" for part in problem.parts) if problem.several else (BODY,)
-    bonds = BondedPoints.of(problem, mesh, permanent.values, points.tied)
-    seen, unseen, apart = free_motions(points, motions, tools, names, bonds)
-    body = Body(
-        problem=problem, mesh=mesh, outline=outline, points=points, loadings=(permanent, *cases), tools=tools,
-        motions=motions, seen=seen, unseen=unseen, bonds=bonds, apart=apart,
-    )  # fmt: skip
-    if problem.case is not None or not problem.load_cases:
-        ensure_held(body)
-    return body
-
-
-def each_case(body: Body) -> Iterator[Body]:
-    """The body under each load case and combination where none of them acts yet; else nothing."""
-    if body.problem.case is None:
-        yield from (replace(body, problem=body.problem.with_case(name)) for name in body.problem.case_names)
-
-
-def ensure_held(body: Body) -> None:
-    """Refuse loads that contact cannot hold, with the `ProblemError` of `body_of`."""
-    try:
-        if violation := body.pinned.violation(body.factors, body.forces, body.problem.units.model_dump()):
-            raise ProblemError(violation + _rest_in_bore(body))
-        _ensure_room_where_held(body)
-        _check_support(body)
-    except ProblemError as error:
-        case = body.problem.case
-        if case is None:
-            raise
-        path = ("load_cases" if case in body.problem.load_cases else "combinations", case)
-        raise ProblemError(Issue(path=path, message=str(error))) from None
-
-
-def _rest_in_bore(body: Body) -> str:
-    """Say where a round body has to be drawn in a round bore so that its load goes through the middle of the bore."""
-    problem, unit = body.problem, replace(body.seen, coefficients=np.eye(body.seen.coefficients.shape[1]))
-    bores = [zone.surface for zone in problem.zones.values()]
-    rims = [problem.edge(name).curve for zone in problem.zones for name in problem.edges_of(zone)]
-    if problem.several or problem.tools or not all(isinstance(it, Circle) and it.body == "inside" for it in bores):
-        return ""
-    middles = (
-        {it.center for it in bores if isinstance(it, Circle)},
-        {it.center for it in rims if isinstance(it, CircularArc)},
-    )
-    if not all(isinstance(it, CircularArc) for it in rims) or any(len(it) > 1 for it in middles):
-        return ""
-    (bore,), (rim,) = np.array(list(middles[0])), np.array(list(middles[1]))
-    force = body.motion_load(unit)[:2] @ body.factors
-    moment = body.motion_load(unit.rotations([tuple(rim.tolist())]))[0] @ body.factors
-    if not force.any() or abs(moment) > BALANCED * problem.size * np.hypot(*force):
-        return ""
-    x, y = bore + np.hypot(*(rim - bore)) * force / np.hypot(*force) - rim
-    return (
-        f"; it slides around the bore until its load goes through the middle of the bore: draw it there, moved by "
-        f"({x:.12g}, {y:.12g})"
-    )
-
-
-def _ensure_room_where_held(body: Body) -> None:
-    """Refuse a surface that lies inside the body where conditions hold it: pressure there would have no bound."""
-    held, problem = body.points.held, body.problem
-    if held is None:
-        return
-    gap = body.held_gaps
-    if (depth := -gap.min(initial=0.0)) > HELD_INSIDE * body.mesh.size:
-        worst = int(gap.argmin())
-        x, y = body.mesh.nodes[held.node[worst]]
-        inside = f"{depth:.3g} {problem.units.length}".strip()
-        message = (
-            f"where conditions hold the body, at ({x:.5g}, {y:.5g}), this surface is {inside} inside it: no pressure "
-            "makes room there; move the surface, or hold the body elsewhere, or end the contact edge before this place"
-        )
-        zone = [*problem.zones][held.zone[worst]]
-        raise ProblemError(Issue(path=("contact_zones", zone, "surface"), message=message))
-
-
-def _check_support(body: Body) -> None:
-    """Refuse loads that no pressure p >= 0 can balance, and a body that no load presses on."""
-    R, load = body.relative_load
-    pull = nonnegative_residual(R.T, -load)
-    if np.linalg.norm(pull) > BALANCED:
-        raise ProblemError(_pull(body, body.seen.combined(pull[:, None])))
-    unloaded = load.size and not load.any()
-    if unloaded and (_may_leave(R) or (body.idle_motion is not None and not _may_be_squeezed(body))):
-        raise ProblemError(
-            f"contact holds {_against(body.seen)}, but no load presses it onto its support, so that its position "
-            "is not determined; apply a load, or prescribe a displacement"
-        )
-
-
-def _may_be_squeezed(body: Body) -> bool:
-    """Whether a load, a displacement, a tool or a surface inside the body is stated: what may press without a load."""
-    values, particular = body.acting.values, body.acting.particular
-    stated = any(part.any() for part in (values.displacement, values.traction, particular.displacement))
-    return stated or bool(body.problem.tools) or bool(body.points.gap.min() < -UNSEEN * body.mesh.size)
-
-
-def _may_leave(rates: Array) -> bool:
-    """Whether motions with these changes (n, k) of gaps open all of them and close none."""
-    while len(rates):
-        opened = _opening(rates)[1]
-        if not opened.any():
-            return False
-        rates = rates[~opened]  # enough of this motion makes up for what others close of these
-    return True
-
-
-def _opening(rates: Array) -> tuple[Array, BoolArray]:
-    """The motion (k,) of those with rates (n, k) that closes no gap and is nearest to ratesᵀ1; which (n,) it opens.
-
-    It is a residual of nonnegative least squares (Moreau).
-    """
-    part = nonnegative_residual(rates.T, -rates.sum(axis=0))
-    part /= max(np.linalg.norm(part), UNSEEN)
-    size = abs(part).max(initial=0.0)
-    return part, (rates @ part > IDLE * size) & (size > UNSEEN)
-
-
-def _pull(body: Body, pull: FreeMotions) -> str:
-    """Say in which motion the loads pull the body or a tool off, and what to add against it."""
-    who, way, direction = pull.who(0), pull.way(0), pull.direction(0)
-    many = pull.several(0)
-    off = "its support" if who == BODY else "what they touch" if many else "what it touches"
-    load, against = "", "against this motion"
-    if direction is not None:
-        resultant = (body.motion_load(pull.along(0)) @ body.factors + 0.0).tolist()
-        load, against = " of ({:.4g}, {:.4g})".format(*resultant), toward(-direction)
-        load += f" {body.problem.units.line_force}".rstrip()
-        way = f"{way}, {toward(direction)}"
-    return (
-        f"the load{load} pulls {who} off {off}: it drives the {way}, which nothing holds; add a load {against} that "
-        f"presses {who} on, or turn the load around or move it, or prescribe a displacement that holds "
-        f"{who if who == BODY else 'them' if many else 'it'}"
-    )
-
-
-def _against(motions: FreeMotions) -> str:
-    """Describe who is free to move, and how: the body against one motion and another, and a tool against a third."""
-    ways: dict[str, list[str]] = {}
-    for j in range(len(motions)):
-        ways.setdefault(motions.who(j), []).append(f"the {motions.way(j)}")
-    return ", and ".join(f"{who} against {' and '.join(way)}" for who, way in ways.items())
-
-
-def deflections(problem: Problem, mesh: Mesh) -> dict[str, Array]:
-    """Displacement (N, 2) [L] of the nodes by contact zone, for each zone whose surface is a deflected contour.
-
-    `ProblemError` if the conditions of a contour contradict each other, or leave the body free to move.
-    """
-    surfaces = {name: zone.surface for name, zone in problem.zones.items()}
-    contours = {name: surface for name, surface in surfaces.items() if isinstance(surface, DeflectedContour)}
-    if not contours:
-        return {}
-    from bemcontact.bem.deflected_contours import deflection
-
-    return {name: deflection(problem, mesh, name, surface) for name, surface in contours.items()}

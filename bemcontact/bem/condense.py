@@ -11,15 +11,17 @@ from itertools import zip_longest
 import numpy as np
 
 from bemcontact.arrays import Array, IntArray
-from bemcontact.bem.body import Body, body_of, ensure_held
+from bemcontact.bem.body import Body
 from bemcontact.bem.bonds import Bond, eliminate
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.congruence import congruent
+from bemcontact.bem.discretization import body_of
 from bemcontact.bem.loading import Loading, combined
 from bemcontact.bem.mesh import MeshPart
 from bemcontact.bem.response import Response
 from bemcontact.bem.rigid_motions import all_rigid_motions
 from bemcontact.bem.solution import solve_system
+from bemcontact.bem.support import ensure_held
 from bemcontact.bem.system import System
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import Gauge, fix_gauge

@@ -12,8 +12,9 @@ from bemcontact.adaptivity.adapt import stated
 from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.solve import Prepared, Stopwatch, ensure_acting, solve_prepared, solve_with
-from bemcontact.bem.body import Body, body_of
+from bemcontact.bem.body import Body
 from bemcontact.bem.condense import Condensation, CondensedTogether, Condenser, condense_together, matrix_of
+from bemcontact.bem.discretization import body_of
 from bemcontact.errors import BemContactError, ProblemError
 from bemcontact.options import SolveOptions
 from bemcontact.problems.problem import Problem

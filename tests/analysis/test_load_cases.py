@@ -31,8 +31,8 @@ from bemcontact.analysis import compare as comparing
 from bemcontact.analysis import load_cases
 from bemcontact.analysis import solve as analysis
 from bemcontact.analysis.result import Result
-from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import condense, condensed
+from bemcontact.bem.discretization import body_of
 from bemcontact.errors import ProblemError
 from bemcontact.options import ComparisonOptions
 from bemcontact.problems import Problem

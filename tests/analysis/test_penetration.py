@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from bemcontact import follow, solve, solve_cases
 from bemcontact.analysis.compare import mesh_study
 from bemcontact.assessment.penetration import ROUND_OFF, TOLERATED, Misfit
-from bemcontact.bem.body import body_of
+from bemcontact.bem.discretization import body_of
 from bemcontact.bem.surface_gaps import FLUSH, NODES, surface_gaps
 from bemcontact.options import ComparisonOptions
 from bemcontact.problems import Problem

@@ -13,7 +13,7 @@ from bemcontact.analysis.displaced_body import ProbedBody, StiffnessChange
 from bemcontact.analysis.linear_theory import LARGE, NOTICED
 from bemcontact.analysis.second_order import CHANGED
 from bemcontact.assessment.penetration import Misfit
-from bemcontact.bem.body import body_of
+from bemcontact.bem.discretization import body_of
 from bemcontact.problems import Problem
 
 HELD = {"displacement": {"x": 0, "y": 0}}

@@ -13,7 +13,7 @@ from several_bodies import GUIDED, HELD, block, circle, elastic, polygon, proble
 
 import bemcontact
 from bemcontact.adaptivity.mesh_sizes import first_mesh
-from bemcontact.bem.body import body_of
+from bemcontact.bem.discretization import body_of
 from bemcontact.report.facts import facts
 from bemcontact.report.result_page import render
 from bemcontact.report.zones import largest_stresses_csv

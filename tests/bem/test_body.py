@@ -7,7 +7,7 @@ import pytest
 from several_bodies import elastic, stated
 
 from bemcontact.analysis.solve import condense, solve
-from bemcontact.bem.body import body_of
+from bemcontact.bem.discretization import body_of
 from bemcontact.errors import ProblemError
 from bemcontact.problems import Problem
 

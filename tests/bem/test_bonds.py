@@ -9,8 +9,8 @@ from several_bodies import HELD, block, elastic, polygon, problem, stated
 
 import bemcontact
 from bemcontact.analysis.solve import solve
-from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import boundary_state, condense
+from bemcontact.bem.discretization import body_of
 from bemcontact.errors import ProblemError
 
 

@@ -9,7 +9,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bemcontact import problem, solve
-from bemcontact.bem.body import body_of
+from bemcontact.bem.discretization import body_of
 from bemcontact.problems import Polyline, Problem
 
 PRESSURE = 3.0

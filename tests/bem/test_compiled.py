@@ -11,8 +11,8 @@ from bodies import MESHES, arc, even, mesh_of, rectangle, segment, solved, syste
 import bemcontact
 from bemcontact import threads
 from bemcontact.bem import system as system_module
-from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import condense
+from bemcontact.bem.discretization import body_of
 from bemcontact.bem.rigid_motions import free_rigid_motions
 from bemcontact.bem.solution import assemble, residual
 from bemcontact.bem.system import BY_NUMBA, WORTH_COMPILING, System, machine_code

@@ -7,8 +7,8 @@ from several_bodies import GUIDED, HELD, Spec, block, elastic, problem
 
 from bemcontact import Problem
 from bemcontact.bem import condense as condensing
-from bemcontact.bem.body import body_of
 from bemcontact.bem.condense import Condensation, boundary_columns, condense_together, condensed
+from bemcontact.bem.discretization import body_of
 
 
 def both(spec, monkeypatch: pytest.MonkeyPatch) -> tuple[Condensation, Condensation]:

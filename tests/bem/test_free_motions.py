@@ -7,7 +7,8 @@ import pytest
 from tool_problems import FREE, HELD, ROLLER, WEDGE, Spec, made
 
 from bemcontact.bem import free_motions
-from bemcontact.bem.body import Body, body_of
+from bemcontact.bem.body import Body
+from bemcontact.bem.discretization import body_of
 from bemcontact.bem.free_motions import FreeMotions
 
 WIDE = {"table": FREE["contact_zones"]["table"], "press": {

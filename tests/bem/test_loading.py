@@ -7,7 +7,8 @@ from tool_problems import FREE, FREE_BY_HAND, FREE_CASES, HELD, HELD_BY_HAND, HE
 
 import bemcontact
 from bemcontact.adaptivity.mesh_sizes import first_mesh
-from bemcontact.bem.body import Body, body_of
+from bemcontact.bem.body import Body
+from bemcontact.bem.discretization import body_of
 from bemcontact.bem.loading import case_loadings, combined, particular_solution, permanent_loading, true_resultant
 from bemcontact.bem.mesh import build
 from bemcontact.errors import ProblemError

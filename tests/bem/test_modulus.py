@@ -14,7 +14,7 @@ from bemcontact import Problem
 from bemcontact.adaptivity import resting_contacts
 from bemcontact.analysis.follow import stated_value
 from bemcontact.arrays import Array
-from bemcontact.bem.body import body_of
+from bemcontact.bem.discretization import body_of
 from bemcontact.errors import ProblemError
 from bemcontact.parametric.sensitivity import Sensitivities
 

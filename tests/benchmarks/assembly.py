@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf
 from timing import best_of
 
-from bemcontact.bem.body import body_of
+from bemcontact.bem.discretization import body_of
 from bemcontact.bem.solution import assemble
 from bemcontact.bem.system import System, machine_code
 from bemcontact.problems.problem import Problem

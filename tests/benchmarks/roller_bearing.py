@@ -18,7 +18,7 @@ from rich.table import Table
 
 import bemcontact
 from bemcontact.bem import condense as condensing
-from bemcontact.bem.body import body_of
+from bemcontact.bem.discretization import body_of
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests"))

@@ -12,7 +12,7 @@ from speed_page import Section, Settings, Table, Target
 from timing import Seconds, in_turns
 
 import bemcontact
-from bemcontact.bem.body import body_of
+from bemcontact.bem.discretization import body_of
 from bemcontact.bem.solution import assemble
 from bemcontact.bem.system import System
 
