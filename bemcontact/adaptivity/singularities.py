@@ -2,14 +2,16 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
+from bemcontact.adaptivity.corner_wedges import wedge_at, wedges_at
 from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved
 from bemcontact.adaptivity.wedge_exponents import (
     BONDED,
     Face,
-    OppositeWedge,
+    Wedges,
     beside_bond,
     contact_face,
     slow_change,
@@ -17,9 +19,8 @@ from bemcontact.adaptivity.wedge_exponents import (
 )
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
-from bemcontact.bem.mesh import CORNER, Mesh
+from bemcontact.bem.mesh import CORNER
 from bemcontact.problems.curves import cross
-from bemcontact.problems.material import Material
 from bemcontact.problems.nearest_places import surface_corners
 
 GROWING = 1.04, 1.9
@@ -186,8 +187,7 @@ def _nearest(measured: float, known: Sequence[float]) -> tuple[float, bool]:
 
 def exponents_at(solved: Solved, answer: CaseAnswer, run: ZoneRun, position: float) -> tuple[float, ...]:
     """Exponents of infinite pressures at a position of a run, by the angle of the body and what holds its faces."""
-    wedge, _, opposite = _wedges_at(solved, answer, run, position)
-    return wedge_exponents(*wedge, opposite)
+    return wedge_exponents(_wedges_at(solved, answer, run, position)[0])
 
 
 def _beside_bond(difference: MeshDifference, place: ContactPlace) -> float | None:
@@ -219,20 +219,23 @@ def _rise(difference: MeshDifference, place: ContactPlace) -> float:
     at, peak = float(answer.pressure[zone, elements].max()), float(answer.pressure[zone].max())
     if not at > 0:
         return 0.0
-    wedge, loads, opposite = _wedges_at(fine, answer, run, place.position)
+    wedges, loads = _wedges_at(fine, answer, run, place.position)
     _, length = contact_beside(run, answer.stretches[run.number], place.position)
     size = max(float(fine.weights[elements].sum(axis=1).min()) / (length or run.length), SHARP)
+    if len(wedges.wedges) > 2:  # no load leaves a state unexcited that so many bodies share
+        exponent = max(wedge_exponents(wedges), default=0.0)
+        return max(0.0, at / peak * (size / SHARP) ** exponent - 1)
     if place.bonded:
         return max(0.0, (at + _rise_beside_bond(fine, answer, run, place, SHARP * (length or run.length))) / peak - 1)
-    straight = all(face.contact for face in wedge[2]) and abs(wedge[1] - np.pi) < CORNER
+    straight = all(face.contact for face in wedges.at.faces) and abs(wedges.at.angle - np.pi) < CORNER
     if straight or (place.end and place.kink):
-        softer = (1.0, opposite.stiffness) if opposite else (1.0,)
-        slope = _slope(fine, place.kink, fine.body.part_of(int(elements[0]))) * min(softer)
+        softest = min(wedge.stiffness for wedge in wedges.wedges)
+        slope = _slope(fine, place.kink, fine.mesh.part_of(int(elements[0]))) * softest
         return max(0.0, (at + slope * np.log(size / SHARP)) / peak - 1)
-    change = slow_change(*wedge, loads, opposite)
+    change = slow_change(wedges, loads)
     if change is None:
         return 0.0
-    sharp = max(change.at(face, at, SHARP / size) for face in range(2) if wedge[2][face].contact)
+    sharp = max(change.at(face, at, SHARP / size) for face in range(2) if wedges.at.faces[face].contact)
     return max(0.0, sharp / peak - 1)
 
 
@@ -241,8 +244,7 @@ def _rise_beside_bond(solved: Solved, answer: CaseAnswer, run: ZoneRun, place: C
 
     It is negative where it takes pressure away, so that contact ends before the bond.
     """
-    wedge, _, opposite = _wedges_at(solved, answer, run, place.position)
-    state = beside_bond(*wedge, opposite)
+    state = beside_bond(_wedges_at(solved, answer, run, place.position)[0])
     if state is None:
         return 0.0
     mesh, elements = solved.mesh, run_elements(solved, run)
@@ -261,79 +263,18 @@ def _slope(solved: Solved, kink: float, part: int) -> float:
     return solved.body.problem.parts[part].material.contact_modulus * kink / (2 * np.pi)
 
 
-ElasticWedge = tuple[float, float, tuple[Face, Face], float]
-"""An elastic wedge as `wedge_exponents` has it."""
-
-
-def _wedges_at(
-    solved: Solved, answer: CaseAnswer, run: ZoneRun, position: float
-) -> tuple[ElasticWedge, tuple[complex, ...], OppositeWedge | None]:
-    """The elastic wedge at a position of a run, the tractions on its faces [p], and the one that it touches.
-
-    Tractions on the faces of the latter come last. Bonded wedges of one material are one; of two, the one beyond the
-    bond is the second one.
-    """
-    mesh, elements = solved.mesh, run_elements(solved, run)
+def _wedges_at(solved: Solved, answer: CaseAnswer, run: ZoneRun, position: float) -> tuple[Wedges, tuple[complex, ...]]:
+    """The elastic wedges at a position of a run, of which that on the run is `own`, and the tractions on faces [p]."""
+    problem, mesh, elements = solved.body.problem, solved.mesh, run_elements(solved, run)
     at = int(np.argmin(np.abs(run.ends - position))) % (len(elements) if run.closed else len(elements) + 1)
     after = int(elements[at] if at < len(elements) else np.argmax(mesh.before == elements[-1]))
-    wedge, loads = _wedge_at(solved, answer, after)
-    facing = solved.body.points.facing.get([*solved.body.problem.zones].index(run.zone))
-    touched, bonded = (_beyond(mesh, each, after) for each in (facing, _across_bonds(solved)))
-    other = touched
-    if bonded not in (None, touched):
-        it, its_loads = _wedge_at(solved, answer, bonded)
-        first, last = ((wedge, loads), (it, its_loads))[:: 1 if wedge[2][1].bonded else -1]
-        if _material_of(solved, bonded) == _material_of(solved, after):  # both are one wedge
-            faces = first[0][2][0], last[0][2][1]
-            wedge, loads = (first[0][0], first[0][1] + last[0][1], faces, wedge[3]), (first[1][0], last[1][1])
-        else:
-            other = bonded
-    if other is None:
-        return wedge, loads, None
-    it, its_loads = _wedge_at(solved, answer, other)
-    if other == bonded != touched:  # what its faces touch is not the first wedge
-        it = (*it[:2], (it[2][0]._replace(contact=False), it[2][1]._replace(contact=False)), it[3])
-    moduli = solved.body.shear_moduli[[after, other]]
-    return wedge, (*loads, *its_loads), OppositeWedge(*it, stiffness=float(moduli[1] / moduli[0]))
-
-
-def _beyond(mesh: Mesh, facing: IntArray | None, after: int) -> int | None:
-    """The element that starts opposite to the start of an element, by what faces each one (m,); None without one."""
-    before = mesh.before[after]
-    if facing is None or max(facing[before], facing[after]) < 0:
-        return None
-    return int(facing[before] if facing[before] >= 0 else mesh.elements[facing[after], 2])
-
-
-def _across_bonds(solved: Solved) -> IntArray:
-    """Element (m,) to which each one is bonded, else -1."""
-    across = np.full(len(solved.mesh.elements), -1)
-    for facing in (solved.mesh.facing[name] for name in solved.body.problem.bonded):
-        own = np.flatnonzero(facing >= 0)
-        across[own], across[facing[own]] = facing[own], own
-    return across
-
-
-def _material_of(solved: Solved, element: int) -> Material:
-    """Material of the body of an element."""
-    return solved.body.problem.parts[solved.body.part_of(element)].material
-
-
-def _wedge_at(solved: Solved, answer: CaseAnswer, after: int) -> tuple[ElasticWedge, tuple[complex, complex]]:
-    """The elastic wedge where an element starts, and the tractions on its faces [p]."""
-    mesh, problem = solved.mesh, solved.body.problem
-    before = int(mesh.before[after])
-    leaves, arrives = mesh.tangents[after, 0], mesh.tangents[before, 2]
-    if mesh.edge[after] == mesh.edge[before]:
-        arrives = leaves  # edges are smooth
-    else:
-        leaves = problem.edge(mesh.edge_names[mesh.edge[after]]).directions(np.array([0.0]))[0]
-        arrives = problem.edge(mesh.edge_names[mesh.edge[before]]).directions(np.array([1.0]))[0]
-    start, end = (float(np.arctan2(y, x)) for x, y in (leaves, arrives))
-    faces = _face(answer, after, start), _face(answer, before, end)
-    angle = float(np.mod(end + np.pi - start, 2 * np.pi))
-    loads = complex(*answer.traction[after, 0]), complex(*answer.traction[before, 2])
-    return (start, angle, faces, _material_of(solved, after).effective_poisson_ratio), loads
+    joints = [*problem.zones, *problem.bonded]
+    touching = np.concatenate([answer.pressure[:, :, 1] > 0, np.ones((len(problem.bonded), len(mesh.elements)), bool)])
+    wedges, ends = wedges_at(problem, mesh, mesh.across(joints, touching), after, partial(_face, answer))
+    loads = (
+        complex(*answer.traction[element, local]) for both in ends for element, local in zip(both, (0, 2), strict=True)
+    )
+    return wedges, tuple(loads)
 
 
 def _face(answer: CaseAnswer, element: int, direction: float) -> Face:
@@ -382,7 +323,7 @@ def _kink_at_end(solved: Solved, answer: CaseAnswer, run: ZoneRun, *, after: boo
     """
     mesh, elements = solved.mesh, run_elements(solved, run)
     start = int(mesh.elements[elements[-1], 2] if after else elements[0])
-    (_, angle, _, _), _ = _wedge_at(solved, answer, start)
+    angle = wedge_at(solved.body.problem, mesh, start, partial(_face, answer)).angle
     turns = [_turn_of_face(solved, answer, element, at) for element, at in ((int(mesh.before[start]), 2), (start, 0))]
     halves = [part for part in (1, 2) if abs(part * angle - np.pi) < CORNER]
     if turns[0] is None or turns[1] is None or not halves:

@@ -1,4 +1,4 @@
-"""Exponents of infinite pressures at a corner, from the angle of the elastic wedge and what holds its faces.
+"""Exponents of infinite pressures and stresses at a corner, from the elastic wedges there and what holds their faces.
 
 Near a corner the displacement is of the form r^λ f(θ), and stresses are infinite like r^(λ-1) if 0 < λ < 1. With
 φ = A z^λ, ψ = B z^λ (Muskhelishvili) two conditions on each face are four real equations for A and B; λ is where they
@@ -6,9 +6,13 @@ are singular (Williams 1952). Frictionless contact with a straight rigid face, u
 free face, sin 2λω + λ sin 2ω = 0, which is λ = 1/2 on a half-plane, ω = π.
 
 Contact of two elastic wedges joins their equations: on both faces shear is zero, and normal tractions and displacements
-are the same (Dundurs and Lee 1972). On bonded faces both components of both are the same. At the tip of a closed
-debond on a straight interface λ = 1/2: shear is infinite on the bond, and if Dundurs' β is not zero, so is pressure on
-the contact, as |β| times that shear (Comninou 1977).
+are the same (Dundurs and Lee 1972). On bonded faces both components of both are the same. Any number of wedges may meet
+so. At the tip of a closed debond on a straight interface λ = 1/2: shear is infinite on the bond, and if Dundurs' β is
+not zero, so is pressure on the contact, as |β| times that shear (Comninou 1977).
+
+Pressure does not change its sign, so that its λ is real. Stress beside clamped and bonded faces may have complex ones:
+with A, its conjugate, B and its conjugate as unknowns, the equations are analytic in λ, and how often their determinant
+turns along a closed path is the number of λ inside (the principle of the argument).
 
 Constant tractions on the faces make λ = 1. Where that is singular too, as in contact beside a free face at a right
 angle, the pressure changes like ln r; near to it, hardly less slowly.
@@ -19,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, ComplexArray
 
 GRID = tuple(np.arange(0.01, 0.995, 0.005).tolist())
 """Values of λ between which roots are looked for."""
@@ -39,10 +43,19 @@ RESONANT = 1e-6
 """Largest |λ - 1| at which the pressure is computed as that of a logarithm."""
 STEP = 1e-6
 """Step of λ for a derivative of the equations."""
-MARGINAL = 1e-6
-"""Angle [rad], and sin² of it, by which round-off may exceed those at which λ = 1."""
+WEAKEST = 3e-4, 0.01
+"""Exponents of stress that are none: round-off of an angle must not make a smaller λ of that of a constant stress.
+Around a closed ring of wedges the states with λ = 1 are so many that others are not told from them so near by."""
+STRONGEST = 0.9
+"""Exponent of stress beyond which there is none."""
+HIGHEST = 3.0
+"""Imaginary part of λ beyond which there is none."""
 UNPRESSED = 1e-6
 """Pressure on a face in contact, over the largest stress of a state, that is none."""
+
+
+OUTWARD = -1.0, 1.0
+"""Signs of the tractions out of a wedge on its faces: the field has those on rays, towards larger angles."""
 
 
 class Face(NamedTuple):
@@ -72,40 +85,63 @@ BONDED = Face(1.0, (True, True), bonded=True)
 """Its direction is that of the face on the other side."""
 
 
-class OppositeWedge(NamedTuple):
-    """The elastic wedge on the other side of contact.
-
-    Parameters
-    ----------
-    start, angle, faces, poisson_ratio : as of `wedge_exponents`; its first face touches the second one of the other
-        wedge, or its second the first
-    stiffness : shear modulus over that of the other wedge
-    """
-
-    start: float
-    angle: float
-    faces: tuple[Face, Face]
-    poisson_ratio: float
-    stiffness: float
-
-
-@lru_cache(maxsize=256)
-def wedge_exponents(
-    start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, opposite: OppositeWedge | None = None
-) -> tuple[float, ...]:
-    """Exponents α = 1 - λ of pressures that are infinite like r^-α, the largest first.
+class Wedge(NamedTuple):
+    """An elastic wedge.
 
     Parameters
     ----------
     start, angle : direction of the first face from the tip, and the angle inside the body from there [rad]
     faces : the first and the second one
     poisson_ratio : of plane strain
-    opposite : the elastic wedge that faces in contact touch; a rigid surface if None
+    stiffness : shear modulus, in any unit that is that of all wedges that meet
     """
-    if not any(face.contact for face in faces):
+
+    start: float
+    angle: float
+    faces: tuple[Face, Face]
+    poisson_ratio: float
+    stiffness: float = 1.0
+
+    @property
+    def directions(self) -> tuple[float, float]:
+        """Directions of both faces [rad]."""
+        return self.start, self.start + self.angle
+
+
+class Wedges(NamedTuple):
+    """Elastic wedges around one tip, counterclockwise. The second face of each is on the first one of the next.
+
+    Parameters
+    ----------
+    wedges : both of two faces that are on each other are in contact, or both are bonded
+    own : number of the wedge whose pressures are asked for
+    closed : whether the last one is on the first
+    """
+
+    wedges: tuple[Wedge, ...]
+    own: int = 0
+    closed: bool = False
+
+    def joined(self, number: int, side: int) -> bool:
+        """Whether a face of a wedge is on that of another one."""
+        return self.closed or (number + 1 < len(self.wedges) if side else number > 0)
+
+    @property
+    def at(self) -> Wedge:
+        """The wedge whose pressures are asked for."""
+        return self.wedges[self.own]
+
+    def own_state(self, states: Array) -> Array:
+        """Its part (…, 4) of states (…, 4 k)."""
+        return states[..., 4 * self.own : 4 * self.own + 4]
+
+
+@lru_cache(maxsize=256)
+def wedge_exponents(wedges: Wedges) -> tuple[float, ...]:
+    """Exponents α = 1 - λ of pressures that are infinite like r^-α, the largest first."""
+    if not any(face.contact for face in wedges.at.faces):
         return ()
-    wedge = (start, angle, faces, poisson_ratio, opposite)
-    return tuple(1 - power for power in _roots(wedge, GRID) if _presses(wedge, power))
+    return tuple(1 - power for power in _roots(wedges, GRID) if _presses(wedges, power))
 
 
 class BesideBond(NamedTuple):
@@ -129,18 +165,16 @@ class BesideBond(NamedTuple):
 
 
 @lru_cache(maxsize=256)
-def beside_bond(
-    start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, opposite: OppositeWedge | None = None
-) -> BesideBond | None:
-    """State of infinite pressure where a bond begins beside contact; None if there is none. Parameters as above."""
-    known = wedge_exponents(start, angle, faces, poisson_ratio, opposite)
+def beside_bond(wedges: Wedges) -> BesideBond | None:
+    """State of infinite pressure where a bond begins beside contact; None if there is none."""
+    known = wedge_exponents(wedges)
     if not known:
         return None
-    power = 1 - known[0]
-    state = np.linalg.svd(_conditions((start, angle, faces, poisson_ratio, opposite), power))[2][-1, :4]
+    power, own = 1 - known[0], wedges.at
+    state = wedges.own_state(np.linalg.svd(_conditions(wedges, power))[2][-1])
     pressure, traction = 0.0, 0j
-    for face, at, sign in zip(faces, (start, start + angle), OUTWARD, strict=True):
-        outward = sign * complex(_field(at, power, poisson_ratio)[1] @ state)
+    for face, at, sign in zip(own.faces, own.directions, OUTWARD, strict=True):
+        outward = sign * complex(_field(at, power, own.poisson_ratio)[1] @ state)
         if face.contact:
             pressure = -(outward * np.conj(face.direction)).real
         if face.bonded:
@@ -149,25 +183,23 @@ def beside_bond(
 
 
 @lru_cache(maxsize=256)
-def stress_is_infinite(start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float) -> bool:
-    """Whether stress grows without bound at the tip of a wedge, unless loads happen not to excite it.
+def stress_is_infinite(wedges: Wedges) -> bool:
+    """Whether stress grows without bound at the tip, unless loads happen not to excite it.
 
-    Parameters are those of `wedge_exponents`. Between a clamped face and a free one λ may be complex; its real part is
-    below one if sin²ω > (κ+1)/4, or ω > π/2 (Williams 1952).
+    It is so if there is a λ with 0 < Re λ < 1.
     """
-    clamped, free = ((held, held) in [face.held for face in faces] for held in (True, False))
-    if clamped and free:
-        return bool(angle > np.pi / 2 + MARGINAL or np.sin(angle) ** 2 > 1 - poisson_ratio + MARGINAL)
-    return bool(_roots((start, angle, faces, poisson_ratio, None), GRID))
+    determinants = np.linalg.det(_conditions(wedges, _strip(WEAKEST[wedges.closed])))
+    turns = np.angle(np.roll(determinants, -1) / determinants).sum() / (2 * np.pi)
+    return round(float(turns)) > 0
 
 
 @lru_cache(maxsize=256)
-def _roots(wedge: "Wedge", grid: tuple[float, ...]) -> tuple[float, ...]:
+def _roots(wedges: Wedges, grid: tuple[float, ...]) -> tuple[float, ...]:
     """Values of λ, between those of a grid, where the equations are singular."""
-    sizes = _singular(wedge, np.array(grid))
+    sizes = _singular(wedges, np.array(grid))
     low = 1 + np.flatnonzero((sizes[1:-1] <= sizes[:-2]) & (sizes[1:-1] < sizes[2:]))
-    powers = [_least(wedge, grid[i - 1], grid[i + 1]) for i in low.tolist()]
-    return tuple(power for power in powers if _singular(wedge, np.array(power)) <= ROOT)
+    powers = [_least(wedges, grid[i - 1], grid[i + 1]) for i in low.tolist()]
+    return tuple(power for power in powers if _singular(wedges, np.array(power)) <= ROOT)
 
 
 class SlowChange(NamedTuple):
@@ -194,169 +226,168 @@ class SlowChange(NamedTuple):
 
 
 @lru_cache(maxsize=256)
-def slow_change(
-    start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, loads: tuple[complex, ...],
-    opposite: OppositeWedge | None = None,
-) -> SlowChange | None:  # fmt: skip
-    """How slowly the pressure changes at the tip of a wedge; None if no λ is near to one.
+def slow_change(wedges: Wedges, loads: tuple[complex, ...]) -> SlowChange | None:
+    """How slowly the pressure changes at the tip of wedges; None if no λ is near to one.
 
-    Parameters
-    ----------
-    start, angle, faces, poisson_ratio, opposite : see `wedge_exponents`
-    loads : traction [p] on each face, of which counts what the face does not hold: on one in contact the shear; then
-        those on the faces of the opposite wedge
+    `loads` are tractions [p] on both faces of each wedge, of which counts what the face does not hold: on one in
+    contact the shear.
     """
-    wedge = (start, angle, faces, poisson_ratio, opposite)
-    roots = [power for power in _roots(wedge, NEAR_ONE) if _presses(wedge, power)]
+    roots = [power for power in _roots(wedges, NEAR_ONE) if _presses(wedges, power)]
     if not roots:
         return None
-    power = min(roots, key=lambda root: abs(root - 1))
-    left, sizes, right = np.linalg.svd(_conditions(wedge, power))
+    power, own = min(roots, key=lambda root: abs(root - 1)), wedges.at
+    left, sizes, right = np.linalg.svd(_conditions(wedges, power))
     null = sizes <= 10 * ROOT * sizes[0]
-    given = _given(wedge, loads)
+    given = _given(wedges, loads)
 
     def pressures(state: Array) -> tuple[float, float]:
         one, other = (
-            -sign * float((_field(at, 1.0, poisson_ratio)[1] * np.conj(face.direction)).real @ state[:4])
+            -sign * float((_field(at, 1.0, own.poisson_ratio)[1] * np.conj(face.direction)).real @ state)
             if face.contact
             else 0.0
-            for face, at, sign in zip(faces, (start, start + angle), OUTWARD, strict=True)
+            for face, at, sign in zip(own.faces, own.directions, OUTWARD, strict=True)
         )
         return one, other
 
-    derivative = (_conditions(wedge, power + STEP) - _conditions(wedge, power - STEP)) / (2 * STEP)
+    derivative = (_conditions(wedges, power + STEP) - _conditions(wedges, power - STEP)) / (2 * STEP)
     left, right = left[:, null], right[null]
     amount = np.asarray(np.linalg.lstsq(left.T @ derivative @ right.T, left.T @ given, rcond=None)[0], float)
-    constant = np.asarray(np.linalg.lstsq(_conditions(wedge, 1.0), given, rcond=None)[0], float)
-    return SlowChange(pressures(constant), pressures(amount @ right), float(power - 1))
+    constant = np.asarray(np.linalg.lstsq(_conditions(wedges, 1.0), given, rcond=None)[0], float)
+    constants, slopes = (pressures(wedges.own_state(state)) for state in (constant, amount @ right))
+    return SlowChange(constants, slopes, float(power - 1))
 
 
-OUTWARD = -1.0, 1.0
-"""Signs of the tractions out of a wedge on its faces: the field has those on rays, towards larger angles."""
-Wedge = tuple[float, float, tuple[Face, Face], float, OppositeWedge | None]
+@lru_cache
+def _strip(weakest: float) -> ComplexArray:
+    """Closed path (k,), counterclockwise around the λ of infinite stress; closest where it passes λ = 1 or 0."""
+    side, other = (
+        1j * near * np.sinh(np.linspace(-1, 1, 161) * np.arcsinh(HIGHEST / near)) for near in (weakest, 1 - STRONGEST)
+    )
+    across = np.linspace(1 - STRONGEST, 1 - weakest, 41)[1:-1]
+    return np.concatenate(
+        [1 - weakest + side, across[::-1] + 1j * HIGHEST, 1 - STRONGEST - other, across - 1j * HIGHEST]
+    )
 
 
-def _least(wedge: Wedge, low: float, high: float) -> float:
+def _least(wedges: Wedges, low: float, high: float) -> float:
     """Where the equations are most nearly singular between two λ; the smallest singular value is like |λ - λ0|."""
     while high - low > EXACT:
         powers = np.linspace(low, high, FINER)
-        least = int(np.clip(_singular(wedge, powers).argmin(), 1, FINER - 2))
+        least = int(np.clip(_singular(wedges, powers).argmin(), 1, FINER - 2))
         low, high = float(powers[least - 1]), float(powers[least + 1])
     return (low + high) / 2
 
 
-def _singular(wedge: Wedge, powers: Array) -> Array:
+def _singular(wedges: Wedges, powers: Array) -> Array:
     """Smallest singular value of the conditions on both faces, over the largest, for each power."""
-    sizes = np.linalg.svd(_conditions(wedge, powers), compute_uv=False)
+    sizes = np.linalg.svd(_conditions(wedges, powers), compute_uv=False)
     return sizes[..., -1] / sizes[..., 0]
 
 
-def _presses(wedge: Wedge, power: float) -> bool:
+def _presses(wedges: Wedges, power: float) -> bool:
     """Whether a state r^λ has pressure on a face in contact."""
-    start, angle, faces, poisson_ratio, _ = wedge
-    _, sizes, states = np.linalg.svd(_conditions(wedge, power))
-    states = states[sizes <= 10 * ROOT * sizes[0], :4]
-    for face, at in zip(faces, (start, start + angle), strict=True):
+    own = wedges.at
+    _, sizes, states = np.linalg.svd(_conditions(wedges, power))
+    states = wedges.own_state(states[sizes <= 10 * ROOT * sizes[0]])
+    for face, at in zip(own.faces, own.directions, strict=True):
         if face.contact:
-            _, traction = _field(at, power, poisson_ratio)
+            _, traction = _field(at, power, own.poisson_ratio)
             if np.abs(states @ (traction * np.conj(face.direction)).real).max() > UNPRESSED:
                 return True
     return False
 
 
-def _conditions(wedge: Wedge, power: float | Array) -> Array:
-    """Matrix of the conditions on both faces, on (Re A, Im A, Re B, Im B), for each power (...): (..., 4, 4).
+def _conditions(wedges: Wedges, power: complex | Array | ComplexArray) -> Array:
+    """Matrix (…, 4 k, 4 k) of the conditions on all faces, for each power (…).
 
-    It is (..., 8, 8) on those of two wedges that touch.
+    Its columns are Re A, Im A, Re B, Im B of each of the k wedges.
     """
-    start, angle, faces, poisson_ratio, other = wedge
-    own_faces = _face_rows(start, angle, faces, poisson_ratio, power)
-    if other is None:
-        return np.stack([row for face in own_faces for row in face.held], axis=-2)
-    other_faces, rows = _face_rows(*other[:4], power), list[tuple[Array | None, Array | None]]()
-    for face, its, across in zip(faces, own_faces, other.faces[::-1], strict=True):
-        joined = face.contact and across.contact  # a face that a third body touches is held as by a rigid one
-        if face.bonded and across.bonded:
-            continue
-        rows += [(its.traction[1], None)] if joined else [(row, None) for row in its.held]
-    for face, its, touched, theirs in zip(other.faces, other_faces, faces[::-1], own_faces[::-1], strict=True):
-        if face.bonded and touched.bonded:
-            rows += [(one, -two) for one, two in zip(theirs.traction, its.traction, strict=True)]
-            moved = zip(theirs.displacement, its.displacement, strict=True)
-            rows += [(one, -two / other.stiffness) for one, two in moved]
-            continue
-        if not (face.contact and touched.contact):
-            rows += [(None, row) for row in its.held]
-            continue
-        turn = touched.direction * np.conj(face.direction)  # the normals are the same or opposite up to round-off
-        sign = 1.0 if turn.real > 0 else -1.0
-        rows.append((None, its.traction[1]))
-        rows.append((theirs.traction[0], -sign * its.traction[0]))
-        rows.append((theirs.displacement[0], -sign / other.stiffness * its.displacement[0]))
-    return np.stack([_joined(*row) for row in rows], axis=-2)
+    rows, count = list[Array](), len(wedges.wedges)
+
+    def add(*parts: tuple[int, Array]) -> None:
+        """Add a row with parts of wedges of these numbers."""
+        row = np.zeros((*parts[0][1].shape[:-1], 4 * count), parts[0][1].dtype)
+        for number, part in parts:
+            row[..., 4 * number : 4 * number + 4] += part
+        rows.append(row)
+
+    for number, wedge in enumerate(wedges.wedges):
+        for side, face in enumerate(wedge.faces):
+            if wedges.joined(number, side) and not side:
+                continue  # with the face that it is on
+            here = _on_face(wedge, side, face.direction, power)
+            if not wedges.joined(number, side):
+                for at in range(2):
+                    add((number, here.displacement[at] if face.held[at] else here.traction[at]))
+            else:
+                other = (number + 1) % count
+                there = _on_face(wedges.wedges[other], 0, face.direction, power)
+                if face.contact:
+                    add((number, here.traction[1]))
+                    add((other, there.traction[1]))
+                softer = min(wedge.stiffness, wedges.wedges[other].stiffness)
+                for at in range(1 if face.contact else 2):
+                    add((number, here.traction[at]), (other, -there.traction[at]))
+                    moved = softer / wedge.stiffness, softer / wedges.wedges[other].stiffness
+                    add((number, moved[0] * here.displacement[at]), (other, -moved[1] * there.displacement[at]))
+    return np.stack(rows, axis=-2)
 
 
-def _given(wedge: Wedge, loads: tuple[complex, ...]) -> Array:
+def _given(wedges: Wedges, loads: tuple[complex, ...]) -> Array:
     """Right sides of the conditions for tractions on the faces, in their order."""
-    _, _, own, _, other = wedge
-    faces = own if other is None else (*own, *other.faces)
-    given = list[float]()
-    for number, (face, load) in enumerate(zip(faces, loads, strict=True)):
-        directions = zip((face.direction, 1j * face.direction), face.held, strict=True)
-        values = [0.0 if held else OUTWARD[number % 2] * (load * np.conj(at)).real for at, held in directions]
-        across = None if other is None else (*other.faces[::-1], *own[::-1])[number]
-        if across and face.bonded and across.bonded:
-            given += [0.0] * (0 if number < 2 else 4)
-        elif across is None or not (face.contact and across.contact):
-            given += values
-        else:
-            given += values[1:] if number < 2 else [values[1], 0.0, 0.0]
+    given, both = list[float](), np.reshape(loads, (-1, 2))
+    for number, wedge in enumerate(wedges.wedges):
+        for side, (face, load) in enumerate(zip(wedge.faces, both[number].tolist(), strict=True)):
+            if not wedges.joined(number, side):
+                directions = zip((face.direction, 1j * face.direction), face.held, strict=True)
+                given += [0.0 if held else OUTWARD[side] * (load * np.conj(at)).real for at, held in directions]
+            elif side and face.contact:
+                sheared = np.array([load, -both[(number + 1) % len(both), 0]]) * np.conj(1j * face.direction)
+                given += [*sheared.real.tolist(), 0.0, 0.0]
+            elif side:
+                given += [0.0] * 4
     return np.array(given)
 
 
 class _FaceRows(NamedTuple):
-    """Rows (..., 4) of displacement and traction along the direction of a face, and across it; those that are held."""
+    """Rows (…, 4) of displacement and traction along a direction on a face, and across it."""
 
     displacement: tuple[Array, Array]
     traction: tuple[Array, Array]
-    held: tuple[Array, Array]
 
 
-def _face_rows(
-    start: float, angle: float, faces: tuple[Face, Face], poisson_ratio: float, power: float | Array
-) -> tuple[_FaceRows, _FaceRows]:
-    """The rows of both faces of a wedge."""
+def _on_face(wedge: Wedge, side: int, direction: complex, power: complex | Array | ComplexArray) -> _FaceRows:
+    """The rows of a face of a wedge in a direction, for complex λ continued analytically from those of real ones."""
+    theta, real = wedge.directions[side], not np.iscomplexobj(power)
+    values = _field(theta, power, wedge.poisson_ratio)
+    mirrored = values if real else _field(theta, np.conj(power), wedge.poisson_ratio)
 
-    def of(face: Face, at: float) -> _FaceRows:
-        displacement, traction = (
-            tuple((values * np.conj(direction)).real for direction in (face.direction, 1j * face.direction))
-            for values in _field(at, power, poisson_ratio)
-        )
-        first, second = (u if held else t for u, t, held in zip(displacement, traction, face.held, strict=True))
-        return _FaceRows((displacement[0], displacement[1]), (traction[0], traction[1]), (first, second))
+    def part(number: int, at: complex) -> Array:
+        one, other = values[number] * np.conj(at), np.conj(mirrored[number] * np.conj(at))
+        return one.real if real else (one + other) / 2
 
-    return of(faces[0], start), of(faces[1], start + angle)
+    (normal, pressure), (along, shear) = ((part(0, at), part(1, at)) for at in (direction, 1j * direction))
+    return _FaceRows((normal, along), (pressure, shear))
 
 
-def _joined(own: Array | None, other: Array | None) -> Array:
-    """A row (..., 8) of two wedges, of which one may have no part in it."""
-    known = own if own is not None else other
-    assert known is not None, "one of the wedges has a part"
-    none = np.zeros_like(known)
-    return np.concatenate([none if own is None else own, none if other is None else other], axis=-1)
-
-
-def _field(theta: float, power: float | Array, poisson_ratio: float) -> tuple[Array, Array]:
-    """2 G u and the traction on a ray (..., 4), as complex numbers, at r = 1 for each of (Re A, Im A, Re B, Im B)."""
+def _field(
+    theta: float, power: complex | Array | ComplexArray, poisson_ratio: float
+) -> tuple[ComplexArray, ComplexArray]:
+    """2 G u and the traction on a ray (…, 4), as complex numbers, at r = 1 for each of (Re A, Im A, Re B, Im B)."""
     A, B = np.array([1, 1j, 0, 0]), np.array([0, 0, 1, 1j])
-    z = np.exp(1j * theta)
-    power = np.asarray(power, float)[..., None]
-    phi, slope, bent = A * _power(theta, power), power * A * _power(theta, power - 1), power * (power - 1) * A
-    displacement = (3 - 4 * poisson_ratio) * phi - z * np.conj(slope) - np.conj(B * _power(theta, power))
-    stress = slope + np.conj(slope) + bent * _power(theta, power - 1) + power * B * _power(theta, power + 1)
+    z, power = np.exp(1j * theta), np.asarray(power)[..., None]
+    own, its = power, power.conj()  # conjugates of functions of λ are those of its conjugate
+
+    def slope(at: Array) -> ComplexArray:
+        return at * A * _power(theta, at - 1)
+
+    displacement = (3 - 4 * poisson_ratio) * A * _power(theta, own) - np.conj(
+        np.conj(z) * slope(its) + B * _power(theta, its)
+    )
+    stress = its * slope(its) + np.conj(slope(own)) + its * B * _power(theta, its + 1)
     return displacement, 1j * z * np.conj(stress)
 
 
-def _power(theta: float, power: Array) -> Array:
+def _power(theta: float, power: Array) -> ComplexArray:
     """Power of z = e^(iθ), continuous in θ."""
     return np.exp(1j * theta * power)

@@ -96,11 +96,7 @@ class Body:
     def material_at(self, node: int) -> Material:
         """Material of the elastic body with a node."""
         element = node if node < len(self.mesh.elements) else node - len(self.mesh.elements)
-        return self.problem.parts[self.part_of(element)].material
-
-    def part_of(self, element: int) -> int:
-        """Number of the elastic body of an element."""
-        return int(self.mesh.part[element]) if len(self.mesh.parts) > 1 else 0
+        return self.problem.parts[self.mesh.part_of(element)].material
 
     @cached_property
     def free(self) -> FreeMotions:

@@ -1,7 +1,7 @@
 """The boundary of the bodies in quadratic elements."""
 
 import dataclasses
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -69,6 +69,28 @@ class Mesh:
         if not self.part.any():
             return (MeshPart(self, slice(None), slice(None)),)
         return tuple(self._part(number) for number in range(self.part[-1] + 1))
+
+    def part_of(self, element: int) -> int:
+        """Number of the elastic body of an element."""
+        return int(self.part[element]) if len(self.part) else 0
+
+    def across(self, contacts: Iterable[str], touching: BoolArray | None = None) -> IntArray:
+        """Element (m,) on the other side of contacts or bonds, from either side, else -1.
+
+        Only those elements of the first sides that are `touching` (k, m) in each contact, if stated.
+        """
+        across = np.full(len(self.elements), -1)
+        for number, facing in enumerate(self.facing.get(contact) for contact in contacts):
+            if facing is not None:
+                on = facing >= 0 if touching is None else (facing >= 0) & touching[number]
+                across[facing[on]], across[on] = np.flatnonzero(on), facing[on]
+        return across
+
+    def ends_of_joints(self, across: IntArray) -> BoolArray:
+        """Whether the other side of a bond begins, ends or changes its body where each element (m,) starts."""
+        before = across[self.before]
+        goes_on = (across >= 0) & (before >= 0) & (self.elements[across, 2] == before)
+        return ~goes_on & ((across >= 0) | (before >= 0))
 
     def _part(self, number: int) -> "MeshPart":
         """The mesh of one elastic body, whose elements follow one another."""
