@@ -7,7 +7,8 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from bemcontact.adaptivity.wedge_exponents import FREE, Face, contact_face, stress_is_infinite
+from bemcontact.adaptivity.corner_wedges import around, wedges_at
+from bemcontact.adaptivity.wedge_exponents import BONDED, FREE, Face, Wedges, contact_face, stress_is_infinite
 from bemcontact.analysis.edge_peak import largest_along
 from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.bem import reference_element
@@ -43,13 +44,13 @@ class BodyStress:
 
     @classmethod
     def of(
-        cls, problem: Problem, number: int, mesh: Mesh, displacement: Array, traction: Array, pressed: BoolArray,
-        infinite: Sequence[Pair] | Array,
+        cls, problem: Problem, number: int, mesh: Mesh, displacement: Array, traction: Array, smooth: BoolArray,
+        singular: BoolArray, infinite: Sequence[Pair] | Array,
     ) -> Self:  # fmt: skip
         """Read the boundary of the elastic body of a number, with its mesh.
 
-        From displacement (m, 3, 2) [L] and traction (m, 3, 2) [p]. `pressed` (m,) are the elements that touch; at the
-        places `infinite`, pressure is known to be so.
+        From displacement (m, 3, 2) [L] and traction (m, 3, 2) [p], and whether elements start smoothly (m,), and at
+        infinite stress by the wedges there (m,). At the places `infinite`, pressure is known to be so.
         """
         part, factors = problem.parts[number], problem.factors()
         of_nodes = np.zeros((len(mesh.nodes), 2))
@@ -61,8 +62,9 @@ class BodyStress:
             traction[..., None],
             [loads[number] for loads in problem.volume_loads],
             np.array([[1.0, *(factors.get(case, 0.0) for case in problem.load_cases)]]),
+            smooth,
         )
-        singular = infinite_starts(field, pressed) | _sheared(field, traction)
+        singular = singular | _sheared(field, traction)
         for place in infinite:
             singular |= np.hypot(*(mesh.nodes[: len(singular)] - place).T) <= NEARLY * mesh.size
         return cls(name=part.name, field=field, traction=traction, singular=singular)
@@ -197,37 +199,50 @@ def kinds(field: StressField, at: Located, singular: BoolArray) -> NDArray[np.st
     return result
 
 
-def infinite_starts(field: StressField, pressed: BoolArray) -> BoolArray:
-    """Whether stress grows without bound where each element (m,) starts, by the wedge there and what holds its faces.
+def infinite_starts(problem: Problem, mesh: Mesh, smooth: BoolArray, pressed: BoolArray) -> BoolArray:
+    """Whether stress grows without bound where each element (m,) of all bodies starts, by the wedges that meet there.
 
-    A surface that is the contour of a slit is curved without bound at its tip, and holds its faces there as none does.
+    `smooth` (m,) is as of `smooth_starts`, and `pressed` (zones, m) are the elements that touch, on both sides. A
+    surface that is the contour of a slit is curved without bound at its tip, and holds its faces there as none does.
     """
-    problem, mesh = field.problem, field.mesh
     slits = [name for name, zone in problem.zones.items() if isinstance(zone.surface, DeflectedContour)]
     of_slits = {edge for name in slits for edge in problem.edges_of(name)}
-    pressed = pressed & ~np.isin(mesh.edge, [i for i, edge in enumerate(mesh.edge_names) if edge in of_slits])
-    result = np.zeros(len(mesh.elements), bool)
-    for after in np.flatnonzero(~field.smooth).tolist():
-        before = int(mesh.before[after])
-        leaves, arrives = mesh.tangents[after, 0], mesh.tangents[before, 2]
-        if mesh.edge[after] != mesh.edge[before]:
-            leaves = problem.edge(mesh.edge_names[mesh.edge[after]]).directions(np.array([0.0]))[0]
-            arrives = problem.edge(mesh.edge_names[mesh.edge[before]]).directions(np.array([1.0]))[0]
-        start, end = (float(np.arctan2(y, x)) for x, y in (leaves, arrives))
-        angle = float(np.mod(end + np.pi - start, 2 * np.pi))
-        angle = 2 * np.pi if angle < FLAT else angle  # the faces of a crack
-        faces = _face(field, after, start, pressed), _face(field, before, end, pressed)
-        result[after] = stress_is_infinite(start, angle, faces, field.material.effective_poisson_ratio)
+    touches = pressed.any(axis=0) & ~np.isin(
+        mesh.edge, [i for i, name in enumerate(mesh.edge_names) if name in of_slits]
+    )
+    bonded = mesh.across(problem.bonded)
+    across = np.where(bonded >= 0, bonded, mesh.across(problem.zones, pressed))
+
+    def face(element: int, direction: float) -> Face:
+        if touches[element]:
+            return contact_face(np.exp(1j * (direction - np.pi / 2)))
+        if bonded[element] >= 0:
+            return BONDED
+        condition = problem.edge_conditions.get(mesh.edge_names[mesh.edge[element]])
+        given = () if condition is None else condition.displacement.given
+        return Face(1.0, ("x" in given, "y" in given)) if given else FREE
+
+    temperatures = [*zip(*([loads.temperature for loads in each] for each in problem.volume_loads), strict=True)]
+    result, known = np.zeros((2, len(mesh.elements)), bool)
+    for after in np.flatnonzero(~smooth).tolist():
+        if not known[after]:
+            together, _ = around(mesh, across, after)
+            wedges, _ = wedges_at(problem, mesh, across, after, face)
+            heats = [temperatures[mesh.part_of(start)] for start in together]
+            logarithmic = heats.count(heats[0]) < len(heats) and _heat_is_logarithmic(wedges, len(together))
+            result[together] = logarithmic or stress_is_infinite(wedges)
+            known[together] = True
     return result
 
 
-def _face(field: StressField, element: int, direction: float, pressed: BoolArray) -> Face:
-    """What holds the face of a wedge with an element, from the direction of the boundary there."""
-    if pressed[element]:
-        return contact_face(np.exp(1j * (direction - np.pi / 2)))
-    condition = field.problem.edge_conditions.get(field.mesh.edge_names[field.mesh.edge[element]])
-    given = () if condition is None else condition.displacement.given
-    return Face(1.0, ("x" in given, "y" in given)) if given else FREE
+def _heat_is_logarithmic(wedges: Wedges, bodies: int) -> bool:
+    """Whether a jump of thermal expansion at a bond of equal materials makes stress grow like ln r at its end.
+
+    It does in a half-plane that ends free, and around a corner in the whole plane. At other corners, and where the
+    materials differ, stress is finite or grows faster.
+    """
+    free = all(not any(face.held) for face in wedges.at.faces) and abs(wedges.at.angle - np.pi) < CORNER
+    return len(wedges.wedges) == 1 < bodies and (wedges.closed or free)
 
 
 def _sheared(field: StressField, traction: Array) -> BoolArray:

@@ -7,13 +7,14 @@ from typing import Self
 
 import numpy as np
 
-from bemcontact.analysis.body_stress import BodyStress, ensure_in_body
+from bemcontact.analysis.body_stress import BodyStress, ensure_in_body, infinite_starts
 from bemcontact.analysis.largest_stress import largest_stresses
 from bemcontact.analysis.triangulated_body import FilledBody, filled_body, triangulated_body
 from bemcontact.arrays import Array, BoolArray, IntArray, real_array
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.mesh import Mesh, build
-from bemcontact.bem.stress_field import Located, StressField
+from bemcontact.bem.outline import Outline
+from bemcontact.bem.stress_field import Located, StressField, smooth_starts
 from bemcontact.contact.stress import (
     INSIDE,
     ON_BOUNDARY,
@@ -52,10 +53,12 @@ class StressOfBodies:
         """
         mesh = build(problem)
         touching, places = _on_both_sides(mesh, [*problem.zones], pressed, infinite)
+        smooth = smooth_starts(Outline(problem=problem, mesh=mesh))
+        singular = infinite_starts(problem, mesh, smooth, touching)
         bodies = [
             BodyStress.of(
                 problem, number, part.mesh, boundary.displacement[part.elements], boundary.traction[part.elements],
-                np.asarray(touching[:, part.elements].any(axis=0)), places,
+                smooth[part.elements], singular[part.elements], places,
             )
             for number, part in enumerate(mesh.parts)
         ]  # fmt: skip

@@ -12,7 +12,7 @@ from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.body import Body
 from bemcontact.bem.condense import Condensation, boundary_columns, condensed
 from bemcontact.bem.outline import Outline
-from bemcontact.bem.stress_field import StressField
+from bemcontact.bem.stress_field import StressField, smooth_starts
 from bemcontact.contact.stress import PointKind
 from bemcontact.contact.stress_operator import StressOperator
 from bemcontact.errors import ProblemError
@@ -55,16 +55,15 @@ def operator_of(condensation: Condensation, points: ArrayLike, name: str | None 
     """The operator of bodies that have been condensed."""
     body, contact = condensation.body, condensation.contact
     columns = boundary_columns(condensation)
-    touching = np.concatenate([body.points.element, body.points.opposite.element])
+    smooth = smooth_starts(body.outline)
+    infinite = _may_be_infinite(body, smooth)
     numbers = numbers_of([part.name for part in body.problem.parts], name)
-    fields = [_field_of(body, number, *columns) for number in numbers]
+    fields = [_field_of(body, number, *columns, smooth) for number in numbers]
     placed = placed_in(fields, points)
     owner, rows = owners(placed), np.arange(len(placed[0].points))
     kind, values = [], []
     for number, field, at in zip(numbers, fields, placed, strict=True):
-        own = body.mesh.parts[number].elements
-        pressed = np.isin(np.arange(len(body.mesh.elements))[own], touching)
-        kind.append(kinds(field, at, _may_be_infinite(field, pressed)))
+        kind.append(kinds(field, at, infinite[body.mesh.parts[number].elements]))
         in_plane = field.stress(at)
         values.append(np.concatenate([in_plane, field.out_of_plane(in_plane, at.points)[None]]))
     of_kind = np.stack(kind)[owner, rows]
@@ -86,7 +85,7 @@ def operator_of(condensation: Condensation, points: ArrayLike, name: str | None 
     )
 
 
-def _field_of(body: Body, number: int, displacement: Array, traction: Array) -> StressField:
+def _field_of(body: Body, number: int, displacement: Array, traction: Array, smooth: BoolArray) -> StressField:
     """Field of the elastic body of a number, by each loading and each unit pressure alone."""
     mesh, elements, nodes = body.mesh.parts[number]
     loads = [of_parts[number] for of_parts in body.problem.volume_loads]
@@ -94,9 +93,16 @@ def _field_of(body: Body, number: int, displacement: Array, traction: Array) -> 
     np.fill_diagonal(factors, 1.0)
     outline = Outline(problem=body.problem, mesh=mesh)
     material = body.problem.parts[number].material
-    return StressField.of(outline, material, displacement[nodes], traction[elements], loads, factors)
+    parts = displacement[nodes], traction[elements], loads, factors, smooth[elements]
+    return StressField.of(outline, material, *parts)
 
 
-def _may_be_infinite(field: StressField, touching: BoolArray) -> BoolArray:
+def _may_be_infinite(body: Body, smooth: BoolArray) -> BoolArray:
     """Whether stress is infinite where each element starts, if no element that may touch does, or all of them do."""
-    return infinite_starts(field, np.zeros_like(touching)) | infinite_starts(field, touching)
+    problem, mesh, points = body.problem, body.mesh, body.points
+    touching = np.zeros((len(problem.zones), len(mesh.elements)), bool)
+    touching[points.zone_of_share, points.element] = True
+    for number, facing in points.facing.items():
+        touching[number, facing[touching[number] & (facing >= 0)]] = True
+    none = infinite_starts(problem, mesh, smooth, np.zeros_like(touching))
+    return none | infinite_starts(problem, mesh, smooth, touching)

@@ -52,10 +52,10 @@ class Located(NamedTuple):
 
 
 def smooth_starts(outline: Outline) -> BoolArray:
-    """Whether boundary and conditions go on smoothly where each element (m,) starts.
+    """Whether boundary and conditions go on smoothly where each element (m,) of all bodies starts.
 
-    They do so along an edge, but for corners of the surfaces that it may touch, and from one edge to the next one if
-    these meet smoothly under the same conditions.
+    They do so along an edge, but for corners of the surfaces that it may touch and ends of its bonds, and from one edge
+    to the next one if these meet smoothly under the same conditions.
     """
     problem, mesh = outline.problem, outline.mesh
     before, element = mesh.before, np.arange(len(mesh.elements))
@@ -64,7 +64,7 @@ def smooth_starts(outline: Outline) -> BoolArray:
     level = np.hypot(*(normals[:, 1] - normals[:, 0]).T) < ROUGH
     what = [_conditions(problem, name) for name in mesh.edge_names]
     alike = np.array([[one == other for other in what] for one in what])[mesh.edge, mesh.edge[before]]
-    smooth = (same | (level & alike)) & (abs(mesh.turns) < CORNER)
+    smooth = (same | (level & alike)) & (abs(mesh.turns) < CORNER) & ~mesh.ends_of_joints(mesh.across(problem.bonded))
     for name, zone in problem.zones.items():
         for edge in map(problem.edge, {*problem.edges_of(name)}.intersection(mesh.edge_names)):
             for corner in surface_corners(edge, zone.surface, at_ends=True):
@@ -102,7 +102,7 @@ class StressField:
     @classmethod
     def of(
         cls, outline: Outline, material: Material, displacement: Array, traction: Array, loads: Sequence[Loads],
-        factors: Array,
+        factors: Array, smooth: BoolArray,
     ) -> Self:  # fmt: skip
         """Read the boundary: displacement (N, 2, q) [L], traction (m, 3, 2, q) [p]."""
         mesh, u, t = outline.mesh, displacement, traction
@@ -112,7 +112,6 @@ class StressField:
                 u = u - field.displacement[..., None] * factor
                 on_boundary = np.einsum("mkij,mkj->mki", field.stress[mesh.elements], mesh.normals)
                 t = t - on_boundary[..., None] * factor
-        smooth = smooth_starts(outline)
         fields = BoundaryFields.of(mesh, material, u, t, smooth)
         return cls(outline=outline, material=material, smooth=smooth, fields=fields, loads=loads, factors=factors)
 

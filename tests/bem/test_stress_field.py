@@ -36,9 +36,9 @@ def field_of(body: Problem) -> StressField:
     motions = free_rigid_motions(mesh, loading.values)
     system = System(mesh=mesh, material=body.material, points=UnitPressures.none(), motions=motions, loadings=[loading])
     u, t = system.fields(solve_system(system).combined(np.ones(1)), loading)
-    return StressField.of(
-        Outline(problem=body, mesh=mesh), body.material, u[..., None], t[..., None], [body.loads], np.ones((1, 1))
-    )
+    outline = Outline(problem=body, mesh=mesh)
+    states = u[..., None], t[..., None], [body.loads], np.ones((1, 1))
+    return StressField.of(outline, body.material, *states, smooth_starts(outline))
 
 
 def column() -> dict:
@@ -137,7 +137,8 @@ def test_where_points_are():
     body = problem({"outer": [flat, circle("arc", 1, [0, 180], 6)], "holes": [[hole]]})
     mesh = build(body)
     u, t = np.zeros((len(mesh.nodes), 2, 1)), np.zeros((len(mesh.elements), 3, 2, 1))
-    field = StressField.of(Outline(problem=body, mesh=mesh), body.material, u, t, [], np.zeros((1, 0)))
+    outline = Outline(problem=body, mesh=mesh)
+    field = StressField.of(outline, body.material, u, t, [], np.zeros((1, 0)), smooth_starts(outline))
     angle = np.linspace(0.05, 3.1, 40)
     rim = np.column_stack([np.cos(angle), np.sin(angle)])
     for on in (rim, [0, 0.5] + 0.2 * rim, np.column_stack([np.linspace(-0.99, 0.99, 17), np.zeros(17)])):
