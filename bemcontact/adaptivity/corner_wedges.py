@@ -53,19 +53,18 @@ def wedges_at(
     Bonded ones of one material are one. Stiffness is over that of the wedge at this element.
     """
     starts, closed = around(mesh, across, after)
-    wedges, ends = list[Wedge](), list[tuple[int, int]]()
+    wedges, ends, numbers = list[Wedge](), list[tuple[int, int]](), list[int]()
     for start in starts:
         new, both = wedge_at(problem, mesh, start, face), (start, int(mesh.before[start]))
         if wedges and _one_material(wedges[-1], new):
             wedges[-1], ends[-1] = _merged(wedges[-1], new), (ends[-1][0], both[1])
         else:
             wedges, ends = [*wedges, new], [*ends, both]
-        if start == after:
-            own, modulus = len(wedges) - 1, new.stiffness
+        numbers.append(len(wedges) - 1)
     if closed and len(wedges) > 1 and _one_material(wedges[-1], wedges[0]):
         wedges[0], ends[0] = _merged(wedges.pop(), wedges[0]), (ends.pop()[0], ends[0][1])
-        own %= len(wedges)
-    scaled = tuple(item._replace(stiffness=item.stiffness / modulus) for item in wedges)
+    own = numbers[starts.index(after)] % len(wedges)
+    scaled = tuple(item._replace(stiffness=item.stiffness / wedges[own].stiffness) for item in wedges)
     return Wedges(scaled, own, closed), ends
 
 

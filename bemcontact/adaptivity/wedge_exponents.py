@@ -264,9 +264,8 @@ def _strip(weakest: float) -> ComplexArray:
         1j * near * np.sinh(np.linspace(-1, 1, 161) * np.arcsinh(HIGHEST / near)) for near in (weakest, 1 - STRONGEST)
     )
     across = np.linspace(1 - STRONGEST, 1 - weakest, 41)[1:-1]
-    return np.concatenate(
-        [1 - weakest + side, across[::-1] + 1j * HIGHEST, 1 - STRONGEST - other, across - 1j * HIGHEST]
-    )
+    parts = [1 - weakest + side, across[::-1] + 1j * HIGHEST, 1 - STRONGEST - other, across - 1j * HIGHEST]
+    return np.concatenate(parts).astype(complex)
 
 
 def _least(wedges: Wedges, low: float, high: float) -> float:
@@ -375,10 +374,10 @@ def _field(
 ) -> tuple[ComplexArray, ComplexArray]:
     """2 G u and the traction on a ray (…, 4), as complex numbers, at r = 1 for each of (Re A, Im A, Re B, Im B)."""
     A, B = np.array([1, 1j, 0, 0]), np.array([0, 0, 1, 1j])
-    z, power = np.exp(1j * theta), np.asarray(power)[..., None]
-    own, its = power, power.conj()  # conjugates of functions of λ are those of its conjugate
+    z, own = np.exp(1j * theta), np.asarray(power, complex)[..., None]
+    its = own.conj()  # conjugates of functions of λ are those of its conjugate
 
-    def slope(at: Array) -> ComplexArray:
+    def slope(at: ComplexArray) -> ComplexArray:
         return at * A * _power(theta, at - 1)
 
     displacement = (3 - 4 * poisson_ratio) * A * _power(theta, own) - np.conj(
@@ -388,6 +387,6 @@ def _field(
     return displacement, 1j * z * np.conj(stress)
 
 
-def _power(theta: float, power: Array) -> ComplexArray:
+def _power(theta: float, power: ComplexArray) -> ComplexArray:
     """Power of z = e^(iθ), continuous in θ."""
     return np.exp(1j * theta * power)
