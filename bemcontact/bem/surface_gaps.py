@@ -458,7 +458,7 @@ class SurfaceGaps(DisplacedSurfaces):
         """Whether each element (m,) is compared with a surface: of a contact of two bodies those of the first alone.
 
         Where both sides are on one body, the edges of the first side alone. Elements that are bonded to the second body
-        move with it.
+        move with it, and those that face this surface in another contact of both bodies are compared there.
         """
         mesh, surface, edges = self.outline.mesh, self.surfaces[zone], self.problem.edges_of(zone)
         if not isinstance(surface, BodySurface):
@@ -467,7 +467,20 @@ class SurfaceGaps(DisplacedSurfaces):
         if first == surface.body:
             return np.isin(mesh.edge_names, edges)[mesh.edge]
         of_first = np.array([self.problem.part_of(name) == first for name in mesh.edge_names])
-        return of_first[mesh.edge] & ~self._bonded_to(surface.body)
+        return of_first[mesh.edge] & ~self._bonded_to(surface.body) & ~self._faces_elsewhere(zone, surface)
+
+    def _faces_elsewhere(self, zone: str, surface: BodySurface) -> BoolArray:
+        """Whether each element (m,) faces an edge of this surface in another contact of both bodies, on either side."""
+        mesh, problem = self.outline.mesh, self.problem
+        of_surface = np.isin(mesh.edge_names, [edge.name for edge in surface.edges])[mesh.edge]
+        elsewhere = np.zeros(len(mesh.elements), bool)
+        for contact in problem.contacts:
+            if contact != zone and {*problem.sides_of(contact)} == {*problem.sides_of(zone)}:
+                facing = mesh.facing.get(contact, np.full(len(mesh.elements), -1))
+                own = np.flatnonzero(facing >= 0)
+                elsewhere[own] |= of_surface[facing[own]]
+                elsewhere[facing[own]] |= of_surface[own]
+        return elsewhere
 
     def _bonded_to(self, body: str) -> BoolArray:
         """Whether each element (m,) is bonded to a body."""

@@ -693,6 +693,27 @@ def test_an_edge_that_is_not_named_penetrates_whichever_side_is_first(pair):
     assert 0.5 * 0.03 < result.penetration.depth < 0.03
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("left", [["roller/rim", "seat/left"], ["seat/left", "roller/rim"]])
+@pytest.mark.parametrize("right", [["roller/rim", "seat/right"], ["seat/right", "roller/rim"]])
+def test_contacts_of_one_rim_with_two_faces_may_state_their_sides_in_any_order(left, right):
+    """A roller in a V of 45 degrees: statics gives the forces on the faces, and each is compared in its own contact."""
+    corners = polygon(
+        bottom=(-12, -5), east=(12, -5), up=(12, 6), right=(6, 6), left=(0, 0), down=(-6, 6), west=(-12, 6)
+    )
+    rim = {"name": "rim", "kind": "arc", "center": [0, 4 * math.sqrt(2)], "radius": 4, "angles": [90, 450]}
+    weight = {"gravity": {"density": 1, "acceleration": [0, -0.4]}}
+    bodies = {
+        "roller": elastic({"outer": [rim]}, modulus=5500.0, loads=weight),
+        "seat": elastic(corners, {"bottom": {"displacement": {"x": 0, "y": 0}}}, 16000.0),
+    }
+    result = solved(bodies, 0.02, left=left, right=right)
+    assert result.holds
+    for name, sign in (("left", 1), ("right", -1)):
+        force = np.array(result.footprint.forces[name]) * (1 if result.sides[name][0] == "roller" else -1)
+        assert force == pytest.approx(0.2 * math.pi * 16 * np.array([sign, 1]), rel=2e-3)
+
+
 def by_zone(result):
     """Names of contacts, places and pressures of the shares of all points, in a fixed order, whoever owns a point."""
     assert result.problem is not None
