@@ -110,7 +110,7 @@ class StressOfBodies:
     @cached_property
     def triangulated(self) -> tuple[TriangulatedBody, ...]:
         """Displacement and stress on triangles that fill each body."""
-        return tuple(map(triangulated_body, self.bodies, self._filled))
+        return tuple(map(triangulated_body, self.bodies, self._filled, range(len(self.bodies))))
 
     @cached_property
     def filled(self) -> TriangulatedBody:
@@ -137,6 +137,7 @@ class StressOfBodies:
                 kind=np.concatenate([item.kind for item in stress])[order],
             ),
             element=np.concatenate([elements[i] + body.element for i, body in enumerate(self.triangulated)]),
+            body=np.concatenate([body.body for body in self.triangulated]),
         )
 
     @cached_property

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from bemcontact.analysis.body_stress import BodyStress
 from bemcontact.arrays import IntArray
 from bemcontact.bem.stress_field import Located
@@ -25,12 +27,13 @@ def filled_body(body: BodyStress) -> FilledBody:
     return FilledBody(at, made.triangles, body.at(at), made.element)
 
 
-def triangulated_body(body: BodyStress, filled: FilledBody) -> TriangulatedBody:
-    """Add the displacement at the corners."""
+def triangulated_body(body: BodyStress, filled: FilledBody, number: int) -> TriangulatedBody:
+    """Add the displacement at the corners, and the number of the body."""
     return TriangulatedBody(
         points=filled.at.points,
         triangles=filled.triangles,
         displacement=body.field.displacement(filled.at)[..., 0],
         stress=filled.stress,
         element=filled.element,
+        body=np.full(len(filled.triangles), number),
     )

@@ -35,7 +35,7 @@ def study(
                 "Outputs to show: peak, peak_x, peak_y, resultant, moment, displacement; of each zone, or of one as in "
                 "force.foot: force, force_x, force_y, start, end, length, intervals, intensity; motion, rotation; "
                 "von_mises and, of each zone, max_shear, which take time.",
-                "peak,resultant,length,displacement",
+                "peak,resultant,length,displacement; of several contacts of bodies force in place of resultant",
             ),
             show_default=False,
         ),

@@ -277,3 +277,5 @@ class TriangulatedBody(WithHints):
     """Stress at the points; not a number where it is infinite."""
     element: IntArray
     """Boundary element (b,) on which, or at the start of which, each of the first b points lies."""
+    body: IntArray
+    """Number (t,) of the elastic body that each triangle fills, in the order of the file, from 0."""

@@ -180,8 +180,13 @@ def _action_issues(item: RawValue, tool: RigidTool) -> Iterator[Issue]:
             yield Issue(path=(*item.path, "displacement", "rotation"), message=message)
 
 
-def reference_issues(references: RawValue, zones: RawValue, cases: Sequence[str]) -> list[Issue]:
-    """Issues of references that name an unknown zone or load case, or no zone where there are several."""
+def reference_issues(
+    references: RawValue, zones: RawValue, cases: Sequence[str], *, several: bool = False
+) -> list[Issue]:
+    """Issues of references that name an unknown zone or load case, or no zone where there are several.
+
+    `several` says that there are several bodies: the sum of contact forces then acts on none.
+    """
     names = [zone.name for zone in zones.named()]
     issues = []
     for reference in references.named():
@@ -190,17 +195,18 @@ def reference_issues(references: RawValue, zones: RawValue, cases: Sequence[str]
             issues.append(Issue(path=case.path, message=unknown_word("load case", case.value, cases)))
         if isinstance(zone.value, str) and names and zone.value not in names:
             issues.append(Issue(path=zone.path, message=unknown_word("contact zone", zone.value, names)))
-        elif zone.value is None and len(names) > 1 and _needs_one_zone(reference):
+        elif zone.value is None and len(names) > 1 and _needs_one_zone(reference, several):
             message = f"there are {len(names)} contact zones; give zone: {' or '.join(names)}"
             issues.append(Issue(path=reference.path, message=message))
     return issues
 
 
-def _needs_one_zone(reference: RawValue) -> bool:
+def _needs_one_zone(reference: RawValue, several: bool) -> bool:
     """Whether a reference is about a single contact zone."""
     kind, against = (reference.below(Table, key).value for key in ("kind", "against"))
-    half_width = reference.below(Values, "half_width").value is not None and kind == "values"
-    return kind in ("hertz", "flat_punch", "pin_in_hole", "crack", "propped_beam") or against == "arc" or half_width
+    half_width, resultant = (reference.below(Values, key).value is not None for key in ("half_width", "resultant"))
+    of_one = kind == "values" and (half_width or (resultant and several))
+    return kind in ("hertz", "flat_punch", "pin_in_hole", "crack", "propped_beam") or against == "arc" or of_one
 
 
 def mesh_issues(boundary: Boundary, path: KeyPath, refine: int) -> list[Issue]:

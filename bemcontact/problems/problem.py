@@ -286,7 +286,8 @@ class Problem(StatedBodies):
         raw, conditions = RawValue((), self), RawValue(("conditions",), self.edge_conditions)
         zones = RawValue(("contact_zones",), {**self.contact_zones, **self.contacts})
         issues += [*contact_issues(self, self.tools), *self._action_issues(raw, zones, conditions)]
-        issues += reference_issues(raw.below(type(self), "reference"), zones, self._raw_case_names(raw))
+        references = raw.below(type(self), "reference")
+        issues += reference_issues(references, zones, self._raw_case_names(raw), several=True)
         stated: dict[KeyPath, ContactZone] = {
             ("contact_zones", name): zone for name, zone in self.contact_zones.items()
         }

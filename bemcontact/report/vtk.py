@@ -31,21 +31,27 @@ def save(result: Result, path: Path) -> None:
     Point data are ``displacement`` [L] and ``traction`` [p] (three components, the third zero), ``pressure`` [p], zero
     off the contact points, ``gap`` [L], not a number off them, and the stresses ``stress_xx``, ``stress_yy``,
     ``stress_xy``, ``stress_zz``, ``von_mises`` and ``max_shear`` [p], not numbers where stress is infinite. Inside,
-    traction is zero. Cell data is ``edge``, the number of the edge in the spec, from 0, and -1 for triangles.
+    traction is zero. Cell data are ``edge``, the number of the edge in the spec, from 0, and -1 for triangles, and
+    ``body``, the number of the elastic body, from 0. Where bodies touch or are bonded each has its own stress.
     `ProblemError` for the result of a condensed problem; other errors as of `ensure_possible`.
     """
     ensure_possible(path)
     pressure, gap = result.contact_fields()
-    boundary = result.boundary
+    boundary, problem = result.boundary, result.problem
     assert boundary is not None  # or there are no fields on it
+    assert problem is not None
     import meshio
 
     inside, rim = result.triangulated, boundary.points[..., 0].size
     lines = np.arange(rim).reshape(-1, 3)[:, [0, 2, 1]]  # the middle node comes last
-    none, on_rim = np.zeros(len(inside.points)), result.stress(boundary.points.reshape(-1, 2))
+    names = [part.name for part in problem.parts]
+    body = np.array([names.index(problem.part_of(edge)) for edge in boundary.edge_names])[boundary.edge]
+    none, on_rim = np.zeros(len(inside.points)), []
+    for number, name in enumerate(names):  # elements of one body follow one another
+        on_rim.append(result.stress(boundary.points[body == number].reshape(-1, 2), name))
     stresses = {
-        f"stress_{measure}" if measure.signed else str(measure): np.append(
-            on_rim.measured(measure), inside.stress.measured(measure)
+        f"stress_{measure}" if measure.signed else str(measure): np.concatenate(
+            [stress.measured(measure) for stress in (*on_rim, inside.stress)]
         )
         for measure in StressMeasure
     }
@@ -59,7 +65,10 @@ def save(result: Result, path: Path) -> None:
             "gap": np.append(gap, np.full(len(none), np.nan)),
             **stresses,
         },
-        cell_data={"edge": [np.asarray(boundary.edge, np.int64), np.full(len(inside.triangles), -1, np.int64)]},
+        cell_data={
+            "edge": [np.asarray(boundary.edge, np.int64), np.full(len(inside.triangles), -1, np.int64)],
+            "body": [body, np.asarray(inside.body, np.int64)],
+        },
     )
     with output.whole_file(path) as temporary:
         mesh.write(temporary, file_format=FORMATS[path.suffix.lower()])

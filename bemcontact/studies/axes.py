@@ -225,6 +225,11 @@ def _items(text: str) -> Iterator[str]:
     yield item
 
 
-def located_in(axis: Axis, error: ProblemError) -> ProblemError:
-    """The error of a value of an axis, with the key where the error has no place."""
-    return error if any(issue.path for issue in error.issues) else ProblemError(f"{axis.written}: {error}")
+def located_in(axis: Axis, value: object, error: ProblemError) -> ProblemError:
+    """The error of a value of an axis, with the key where it has no place, and the value where it has another."""
+    if not any(issue.path for issue in error.issues):
+        return ProblemError(f"{axis.written}: {error}")
+    own, at = {path[-1] for path in axis.paths}, f" (with {axis.name} = {value})"
+    elsewhere = (bool({*issue.path[-1:]} - own) for issue in error.issues)
+    issues = zip(error.issues, elsewhere, strict=True)
+    return ProblemError([replace(issue, message=issue.message + at) if there else issue for issue, there in issues])

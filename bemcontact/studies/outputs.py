@@ -149,7 +149,7 @@ def chosen(output: str | Sequence[str] | None, problem: Problem) -> tuple[str, .
     """
     if isinstance(output, str):
         output = [name.strip() for name in output.split(",")]
-    names = USUAL if output is None else texts(output, "output")
+    names = _usual(problem) if output is None else texts(output, "output")
     if not names:
         raise OptionError(f"no output is named; there are: {', '.join(_known())}")
     for name in names:
@@ -162,6 +162,12 @@ def chosen(output: str | Sequence[str] | None, problem: Problem) -> tuple[str, .
                 raise OptionError(f"output {name}: write {part}, or {part}.{next(iter(problem.zones))}")
             raise OptionError(f"output {name}: {unknown_word('contact zone', owner, problem.zones)}")
     return tuple(dict.fromkeys(part for name in names for part in ALL_OF.get(name, (name,))))
+
+
+def _usual(problem: Problem) -> tuple[str, ...]:
+    """The usual outputs; of several contacts of bodies the force of each, for their sum acts on no body."""
+    apart = problem.several and len(problem.zones) > 1
+    return tuple("force" if apart and name == "resultant" else name for name in USUAL)
 
 
 def _known() -> tuple[str, ...]:

@@ -127,7 +127,7 @@ class StudyPlan:
                 try:
                     self.problem_with({**fixed, axis.name: value})
                 except ProblemError as error:
-                    raise located_in(axis, error) from None
+                    raise located_in(axis, value, error) from None
 
 
 def _acts(path: tuple[str | int, ...]) -> bool:

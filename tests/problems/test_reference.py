@@ -257,6 +257,18 @@ def test_reference_names_one_of_several_zones(text: str):
     bemcontact.loads(spec(text.replace("}", ", zone: wall}"), WALL))
 
 
+def test_a_resultant_of_several_bodies_names_one_of_their_contacts():
+    """The sum of forces on a stack is that of no body; with the sides of one contact exchanged it would be zero."""
+    stack = bemcontact.load(Path(__file__).parents[2] / "models" / "bodies" / "stack_of_three.yaml").to_dict()
+    stated = {"kind": "values", "source": "weight", "resultant": 150.0}
+    found = r"reference\.it: there are 2 contact zones; give zone: upper joint or lower joint"
+    with pytest.raises(bemcontact.ProblemError, match=found):
+        bemcontact.problem({**stack, "reference": {"it": stated}})
+    bemcontact.problem({**stack, "reference": {"it": {**stated, "zone": "upper joint"}}})
+    one_body = spec("{kind: values, source: weight, resultant: 10}", WALL)
+    assert bemcontact.loads(one_body).reference["it"].zone is None
+
+
 def test_pin_names_one_of_several_zones():
     text = spec("{kind: pin_in_hole, load: 1, radius: 1, clearance: 0.01}", WALL)
     with pytest.raises(

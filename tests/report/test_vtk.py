@@ -33,6 +33,31 @@ contact_zones:
 """
 """Pressures of 3 on the floor and 2 on the wall satisfy all equations: its stress is constant."""
 EDGES = np.repeat([0, 1, 2, 3], [4, 3, 4, 3])
+BONDED = """\
+name: bonded strips
+bodies:
+  hard:
+    material: {young_modulus: 1000, poisson_ratio: 0.3, state: plane_stress}
+    boundary:
+      outer:
+        - {name: bottom, start: [0, 0], elements: 4}
+        - {name: right, start: [2, 0], elements: 2}
+        - {name: top, start: [2, 1], elements: 4}
+        - {name: left, start: [0, 1], elements: 2}
+    conditions: {bottom: {displacement: {y: 0}}, left: {displacement: {x: 0}}, right: {displacement: {x: 0.002}}}
+  soft:
+    material: {young_modulus: 200, poisson_ratio: 0.4, state: plane_stress}
+    boundary:
+      outer:
+        - {name: bottom, start: [0, 1], elements: 4}
+        - {name: right, start: [2, 1], elements: 2}
+        - {name: top, start: [2, 2], elements: 4}
+        - {name: left, start: [0, 2], elements: 2}
+    conditions: {left: {displacement: {x: 0}}, right: {displacement: {x: 0.002}}}
+bonded: {glue: [soft/bottom, hard/top]}
+contact_zones: {lid: {edges: soft/top, surface: {kind: plane, point: [0, 3], normal: [0, -1]}}}
+"""
+"""Both are stretched by 0.001, and each is free across: its stress is E times this, along the strips only."""
 
 
 @pytest.fixture
@@ -91,6 +116,20 @@ def test_the_inside_has_the_constant_stress_of_the_block(tmp_path: Path):
     inside = np.unique(triangles)
     stretch = np.array([-2 + 0.3 * 3 + 0.3 * 1.5, -3 + 0.3 * 2 + 0.3 * 1.5]) / 1000
     assert found.point_data["displacement"][inside, :2] == pytest.approx(found.points[inside, :2] * stretch, abs=1e-10)
+
+
+def test_each_of_two_bonded_bodies_has_its_own_stress(tmp_path: Path):
+    """Lines and triangles of each body, those at the bond too, have its stress E ε, and its number."""
+    vtk.save(analysis.solve(spec.loads(BONDED)), tmp_path / "strips.vtu")
+    found = meshio.read(tmp_path / "strips.vtu")
+    assert (found.cell_data["body"][0] == np.repeat([0, 1], 12)).all()
+    for cells, bodies in zip(found.cells, found.cell_data["body"], strict=True):
+        for number, stress in enumerate([1.0, 0.2]):
+            own = np.unique(cells.data[bodies == number])
+            heights = found.points[own, 1]
+            assert (heights.min(), heights.max()) == (number, number + 1)
+            for name in ("stress_xx", "von_mises"):
+                assert found.point_data[name][own] == pytest.approx(np.full(len(own), stress), abs=1e-8)
 
 
 def test_pressure_and_gap_are_on_the_elements_of_their_zone(tmp_path: Path):

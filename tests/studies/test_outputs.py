@@ -54,6 +54,14 @@ def test_outputs_may_be_one_text_as_on_the_command_line():
     assert chosen("peak, force.wall", ZONES) == chosen(["peak", "force.wall"], ZONES)
 
 
+def test_the_usual_outputs_have_no_sum_of_forces_on_different_bodies():
+    """The sum would be twice the load of a stack of three, or nothing with the sides of one contact exchanged."""
+    assert chosen(None, ZONES) == ("peak", "resultant_x", "resultant_y", "length", "displacement")
+    assert chosen(None, bemcontact.load(MODELS / "bodies" / "stack_of_three.yaml")) == (
+        "peak", "force", "length", "displacement",
+    )  # fmt: skip
+
+
 @pytest.mark.slow
 def test_largest_stresses_are_outputs_if_they_are_asked_for():
     """Below the roller the maximum inside is larger than that on the boundary; each with its error, absolute."""

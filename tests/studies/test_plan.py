@@ -76,6 +76,14 @@ def test_values_that_are_wrong_by_themselves_are_refused_before_any_work(vary: d
         study_plan(CYLINDER, vary)
 
 
+def test_a_refusal_elsewhere_names_the_value():
+    """The radius 9 in place of 8 opens the loop at the next edge; a radius of -1 is named where it is wrong."""
+    with pytest.raises(ProblemError, match=r"the loop is open.*\(with .*rim\.radius = 9\)"):
+        study_plan(CYLINDER, {RADIUS[0]: [8, 9]})
+    with pytest.raises(ProblemError, match=r"greater than 0, found -1$"):
+        study_plan(CYLINDER, {RADIUS[0]: [-1]})
+
+
 def test_a_key_depends_on_problem_and_values_alone():
     """Other values on an axis, or another order of axes, leave the keys of common members as they are."""
     one = study_plan(CYLINDER, {LOAD: [10, 20], MODULUS: [1000, 2000]}).keys()
