@@ -1,7 +1,6 @@
-"""Types of arrays, the reading of arrays that users give, read-only arrays, and remainders without rounding."""
+"""Types of arrays, the reading of arrays that users give, lengths of vectors, and remainders without rounding."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields
 from math import fsum
 from typing import Any
 
@@ -71,11 +70,16 @@ def read_arrays(
 
 def freeze_arrays(instance: Any) -> None:
     """Replace the arrays of a frozen dataclass by read-only copies."""
-    for item in fields(instance):
-        if isinstance(array := getattr(instance, item.name), np.ndarray):
-            frozen = array.copy()
+    for name, value in [*vars(instance).items()]:
+        if isinstance(value, np.ndarray):
+            frozen = value.copy()
             frozen.setflags(write=False)
-            object.__setattr__(instance, item.name, frozen)
+            object.__setattr__(instance, name, frozen)
+
+
+def magnitudes(vectors: Array) -> Array:
+    """Lengths (...) of vectors (..., 2)."""
+    return np.hypot(vectors[..., 0], vectors[..., 1])
 
 
 def _as_array(value: Any, what: str) -> NDArray[Any]:

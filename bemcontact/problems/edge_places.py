@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.problems.curves import Edge, Segment, cross
 
 STEEPEST = 0.5
@@ -69,7 +69,7 @@ def nearest_on(edges: Sequence[Edge], points: Array) -> EdgePlaces:
     """Places of edges that are nearest to points (k, 2) [L]."""
     fractions = np.array([edge.curve.nearest(points) for edge in edges])
     places = np.array([edge.points(at) for edge, at in zip(edges, fractions, strict=True)])
-    number = np.hypot(*np.moveaxis(points - places, 2, 0)).argmin(axis=0)
+    number = magnitudes(points - places).argmin(axis=0)
     return places_at(edges, number, fractions[number, np.arange(len(points))])
 
 
@@ -120,7 +120,7 @@ class NormalWeight(NamedTuple):
 
     def at(self, points: Array) -> Array:
         """Weight (k,) at points (k, 2) [L]."""
-        away = np.hypot(*np.moveaxis(points[:, None] - self.corners[:, :2], 2, 0)) / self.corners[:, 2]
+        away = magnitudes(points[:, None] - self.corners[:, :2]) / self.corners[:, 2]
         return self.most * np.prod(1 - (1 - np.minimum(away, 1.0) ** 2) ** 4, axis=1)
 
 
