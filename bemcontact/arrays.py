@@ -210,6 +210,8 @@ def nonnegative_residual(columns: Array, right: Array) -> Array:
     ----------
     C. L. Lawson and R. J. Hanson, "Solving Least Squares Problems" (1974), chapter 23.
     """
+    if len(right) == 1:
+        return np.where((np.sign(columns) * right > 0.0).any(), 0.0, -right)
     length = np.linalg.norm(columns, axis=0)
     unit = columns[:, length > 0.0] / length[length > 0.0]
     used, x, residual = np.zeros(0, int), np.zeros(0), -right
