@@ -31,10 +31,11 @@ def real_array(value: Any, what: str, shape: Dimensions | None = None, *, finite
     too large to compute with, unless `finite` is False. The array is not copied if it is one already.
     """
     array = _as_array(value, what)
-    if array.dtype.kind == "O" and all(is_real(entry) for entry in array.flat):
-        array = _as_floats(array, what)
-    if array.dtype.kind not in "iuf" and array.size:
-        raise ProblemError(f"{what} must contain real numbers; found {_described(value, array)}")
+    if array.dtype != np.float64:
+        if array.dtype.kind == "O" and all(is_real(entry) for entry in array.flat):
+            array = _as_floats(array, what)
+        if array.dtype.kind not in "iuf" and array.size:
+            raise ProblemError(f"{what} must contain real numbers; found {_described(value, array)}")
     _ensure_shape(array, what, shape)
     array = np.asarray(array, dtype=float)
     if finite and not (np.abs(array) <= LARGEST_NUMBER).all():  # false also for what is not a number
@@ -113,7 +114,7 @@ def _as_floats(array: NDArray[Any], what: str) -> Array:
 
 def _ensure_shape(array: NDArray[Any], what: str, shape: Dimensions | None) -> None:
     """Refuse another shape."""
-    if shape is None:
+    if shape is None or array.shape == shape:
         return
     fits = array.ndim == len(shape) and all(want in (None, has) for want, has in zip(shape, array.shape, strict=True))
     if not fits:
