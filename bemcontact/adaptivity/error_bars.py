@@ -13,7 +13,7 @@ from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved, nor
 from bemcontact.adaptivity.hidden_changes import hidden_change, hidden_displacement
 from bemcontact.adaptivity.singularities import BESIDE, FITTED, Singularity, logarithmic_rise, run_elements
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside, images
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.bem import reference_element
 from bemcontact.contact.free_motions import angle_of_round_off
@@ -148,7 +148,7 @@ def _strain(estimate: _Estimate) -> float:
 
 def _farthest(solved: Solved, answer: CaseAnswer) -> tuple[float, float] | None:
     """Node that is displaced most; None if there are several of this kind, or if none is."""
-    moved = np.hypot(*np.moveaxis(answer.displacement, 2, 0))
+    moved = magnitudes(answer.displacement)
     nodes = np.unique(solved.mesh.nodes[solved.mesh.elements[moved >= (1 - NOTHING) * moved.max()]], axis=0)
     return solved.mesh.place(nodes[0]) if len(nodes) == 1 else None
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from bemcontact.adaptivity.mesh_sizes import as_of_one
 from bemcontact.adaptivity.zone_runs import SAME, Stretch, ZoneRun, contact_stretches, zone_runs
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, magnitudes
 from bemcontact.assessment.footprint import footprint
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
@@ -95,7 +95,7 @@ class CaseAnswer:
     @cached_property
     def largest_displacement(self) -> float:
         """Largest magnitude of `displacement` [L]."""
-        return float(np.hypot(*np.moveaxis(self.displacement, 2, 0)).max())
+        return float(magnitudes(self.displacement).max())
 
     def force_vector(self, zone: int) -> Array:
         """Force (2,) of the surface of a zone on the body [p L]."""
@@ -356,7 +356,7 @@ def penetrations(answer: Solved, case: CaseAnswer) -> Iterator[tuple[int, float]
     """Open elements through which a surface passes between the nodes, with the depth [L]."""
     condensation = case.condensation
     gaps = surface_gaps(condensation.body, case.state, condensation.contact, case.solution)
-    size = float(np.hypot(*np.moveaxis(case.displacement, 2, 0)).max())
+    size = float(magnitudes(case.displacement).max())
     for number, zone in enumerate(answer.body.problem.zones):
         elements = np.flatnonzero(answer.in_zone[number] & ~(case.pressure[number] > 0).any(axis=1))
         if zone in gaps.surfaces and len(elements):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from bemcontact.adaptivity.corner_wedges import around, wedges_at
 from bemcontact.adaptivity.wedge_exponents import BONDED, FREE, Face, Wedges, contact_face, stress_is_infinite
 from bemcontact.analysis.edge_peak import largest_along
-from bemcontact.arrays import Array, BoolArray, IntArray, real_array
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes, real_array
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import CORNER, Mesh
 from bemcontact.bem.outline import Outline
@@ -250,5 +250,5 @@ def _sheared(field: StressField, traction: Array) -> BoolArray:
     mesh = field.mesh
     tangents = mesh.tangents / mesh.jacobians[..., None]
     shear = np.sum(traction * tangents, axis=2)
-    jump = abs(shear[:, 0] - shear[mesh.before, 2]) > FLAT * np.hypot(*np.moveaxis(traction, 2, 0)).max(initial=0.0)
+    jump = abs(shear[:, 0] - shear[mesh.before, 2]) > FLAT * magnitudes(traction).max(initial=0.0)
     return ~field.smooth & (abs(mesh.turns) < CORNER) & (abs(mesh.inner_angles - np.pi) < CORNER) & jump

@@ -6,7 +6,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from bemcontact.adaptivity.mesh_sizes import cut
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, magnitudes
 from bemcontact.bem.body import Body
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.condense import boundary_state, condense
@@ -131,7 +131,7 @@ class ProbedBody:
         """Largest change of a displacement (N, 2) between neighboring nodes, over their distance."""
         mesh = self.body.mesh
         change, along = (np.diff(values[mesh.elements], axis=1) for values in (shape, mesh.nodes))
-        return float((np.hypot(*np.moveaxis(change, 2, 0)) / np.hypot(*np.moveaxis(along, 2, 0))).max())
+        return float((magnitudes(change) / magnitudes(along)).max())
 
 
 def elastic_displacement(body: Body, state: BoundaryState) -> Array:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import ALIKE, SMOOTH, ContactPoints
 from bemcontact.bem.free_motions import steps_of_surfaces
@@ -165,7 +165,7 @@ def _convex(mesh: Mesh, nodes: IntArray) -> IntArray:
 
 def _nearest(points: Array, places: Array) -> Array:
     """Distance (k,) [L] of points (k, 2) from the nearest of some places (j, 2); infinite without any."""
-    return np.hypot(*np.moveaxis(points[:, None] - places, 2, 0)).min(axis=1, initial=np.inf)
+    return magnitudes(points[:, None] - places).min(axis=1, initial=np.inf)
 
 
 def _at_points(gaps: SurfaceGaps, points: ContactPoints) -> Array:
@@ -257,6 +257,8 @@ def _load_of_turns(
 ) -> Array:
     """Work (j,) in free motions of what the pressure gains along the normals of the displaced places."""
     forces, motions = (contact.weights * solution.pressure)[:, None] * moved.turn, body.free
+    if not forces.any():
+        return np.zeros(len(motions))
     at, other = motions.displacement(body.mesh), body.points.opposite.node
     work = np.tensordot(forces, at[body.points.node], axes=2)
     work -= np.tensordot(forces[other >= 0], at[other[other >= 0]], axes=2)

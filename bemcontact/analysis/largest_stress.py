@@ -16,7 +16,7 @@ from scipy.spatial import KDTree
 
 from bemcontact.analysis.body_stress import BodyStress
 from bemcontact.analysis.triangulated_body import FilledBody
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.bem import reference_element
 from bemcontact.contact.stress import (
     INSIDE,
@@ -315,7 +315,7 @@ class _Search:
     def _distance(self, point: Array, elements: IntArray) -> tuple[float, int]:
         """Distance [L] of a point from the nearest of some elements, and its number among them."""
         mesh, xi = self.body.field.mesh, np.linspace(-1, 1, SAMPLES)
-        away = np.hypot(*np.moveaxis(reference_element.values(xi) @ mesh.nodes[mesh.elements[elements]] - point, 2, 0))
+        away = magnitudes(reference_element.values(xi) @ mesh.nodes[mesh.elements[elements]] - point)
         number, sample = np.unravel_index(away.argmin(), away.shape)
         near = np.linspace(
             max(-1.0, xi[sample - 1] if sample else -1.0), min(1.0, xi[sample] + 2 / (SAMPLES - 1)), SAMPLES

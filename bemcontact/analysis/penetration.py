@@ -16,7 +16,7 @@ from bemcontact.analysis.moved_contact import judged_to
 from bemcontact.analysis.path_states import FollowedPath
 from bemcontact.analysis.placement import placement
 from bemcontact.analysis.second_order import second_order
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.penetration import ROUND_OFF, Misfit, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.body import Body
@@ -73,7 +73,7 @@ def penetration(
     after it.
     """
     state, worst, notes = gaps.state, None, list[str]()
-    largest = float(np.hypot(*np.moveaxis(state.displacement, 2, 0)).max())
+    largest = float(magnitudes(state.displacement).max())
     allowed = tolerated(contact, largest, gaps.problem.size)
     for zone in gaps.surfaces:
         found, paired = gaps.intrusion(zone), gaps.paired[zone]
@@ -120,7 +120,7 @@ def _through_itself(gaps: SurfaceGaps, body: Body) -> Penetration | None:
     if meeting is None:
         return None
     elements, near = np.concatenate(loops), np.concatenate(places) - meeting
-    distance = np.hypot(*np.moveaxis(near, 2, 0))
+    distance = magnitudes(near)
     order = elements[np.argsort(distance.min(axis=1))]
     of_edge = [gaps.problem.part_of(name) for name in state.edge_names]
     nearest = [(int(i), of_edge[mesh.edge[i]]) for i in order]

@@ -15,7 +15,7 @@ from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.analysis.body_stress import BodyStress
 from bemcontact.analysis.largest_stress import RINGS, Measure
 from bemcontact.analysis.stress_of_bodies import StressOfBodies
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, magnitudes
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.contact.stress import LargestStresses, Stress, StressPeak
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
@@ -109,7 +109,7 @@ class _Pair:
     def _change_along(self, peak: StressPeak, edge: str) -> float | None:
         """Largest change [p] of the equivalent stress at nodes of both meshes around a maximum on an edge."""
         fine, coarse = sorted((body.along(edge) for body in (self.one, self.two)), key=lambda item: -len(item.arc))
-        away = np.hypot(*np.moveaxis(coarse.points - peak.point, 2, 0)).min(axis=1)
+        away = magnitudes(coarse.points - peak.point).min(axis=1)
         element = int(away.argmin())
         near = slice(max(0, element - 1), element + 2)
         nodes = np.stack([fine.von_mises[0::2, 0], fine.von_mises[0::2, 2], fine.von_mises[1::2, 2]], axis=1)

@@ -10,7 +10,7 @@ import numpy as np
 from bemcontact.analysis.body_stress import BodyStress, ensure_in_body, infinite_starts
 from bemcontact.analysis.largest_stress import largest_stresses
 from bemcontact.analysis.triangulated_body import FilledBody, filled_body, triangulated_body
-from bemcontact.arrays import Array, BoolArray, IntArray, real_array
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes, real_array
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.outline import Outline
@@ -198,7 +198,7 @@ def _on_both_sides(
             touching[zone, facing[own[pressed[zone, own]]]] = True
         for local in (0, 2):
             at = mesh.nodes[mesh.elements[own, local]]
-            away = np.hypot(*np.moveaxis(at[:, None] - places[0], 2, 0))
+            away = magnitudes(at[:, None] - places[0])
             near = (away <= SAME_PLACE * mesh.size).any(axis=1)
             places.append(mesh.nodes[mesh.elements[facing[own[near]], 2 - local]])
     return touching, np.concatenate(places)

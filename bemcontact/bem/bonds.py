@@ -58,6 +58,8 @@ class BondedPoints:
 
         There is none along an axis along which conditions hold both nodes. `tied` (N,) is that of `ContactPoints`.
         """
+        if not (problem.bonded or problem.spin_centers):
+            return cls.none(mesh)
         element, across = bonded_elements(problem, mesh)
         nodes = np.stack([mesh.elements[element], mesh.elements[across, ::-1]], axis=-1)
         both, pair = np.unique(np.sort(nodes).reshape(-1, 2), axis=0, return_inverse=True)
@@ -86,6 +88,15 @@ class BondedPoints:
         return cls(
             mesh=mesh, count=count, element=element[free], local=local[free],
             component=component[free], tractions=tractions[free], node=nodes, changed=changed, change=change,
+        )  # fmt: skip
+
+    @classmethod
+    def none(cls, mesh: Mesh) -> Self:
+        """No component, where no bodies are bonded and none might spin."""
+        numbers, vectors = np.zeros(0, int), np.zeros((0, 2))
+        return cls(
+            mesh=mesh, count=0, element=numbers, local=numbers, component=numbers, tractions=vectors, node=numbers,
+            changed=numbers, change=vectors,
         )  # fmt: skip
 
     def __len__(self) -> int:

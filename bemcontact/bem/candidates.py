@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ALIKE, SMOOTH, ContactPoints, HeldNodes
 from bemcontact.bem.mesh import Mesh, runs
@@ -162,7 +162,7 @@ def _faces(outline: Outline, surface: AnySurface, deflection: Array | None) -> _
         held = Faces(gap, normals, normals)
     else:
         held = surface.faces(outline.mesh.nodes, *outline.sides)
-    other = np.hypot(*np.moveaxis(held.normals - held.normals[:, [2, 0, 0]], 2, 0)) > ALIKE
+    other = magnitudes(held.normals - held.normals[:, [2, 0, 0]]) > ALIKE
     return _NodeFaces(*held, other | (abs(held.gap - held.gap[:, [2, 0, 0]]) > ALIKE * outline.mesh.size))
 
 
@@ -269,8 +269,9 @@ def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray, kinds: IntArray) -
         sense_of = np.ones(len(mesh.nodes))
         sense_of[piece.nodes] = sense[first : first + len(piece.nodes)]
         carrier, signs = point_of[mesh.elements[piece.elements]], sense_of[mesh.elements[piece.elements]]
-        at_jump = np.isin(mesh.elements[piece.elements], piece.nodes[jumps[first : first + len(piece.nodes)]])
-        carrier, signs = (np.where(at_jump, values[:, [1]], values) for values in (carrier, signs))
+        if jumps.any():
+            at_jump = np.isin(mesh.elements[piece.elements], piece.nodes[jumps[first : first + len(piece.nodes)]])
+            carrier, signs = (np.where(at_jump, values[:, [1]], values) for values in (carrier, signs))
         beyond = piece.bonded | piece.goes_on
         for goes_on, element, end in zip(beyond.tolist(), (0, -1), (0, 2), strict=True):
             if goes_on:
@@ -334,7 +335,10 @@ def _jumps(sides: IntArray, kinds: IntArray, normals: Array, tool: Sequence[str 
 
     Common normals with bodies of other moduli are not quite the same.
     """
-    order, jumps = np.argsort(sides, axis=1), np.zeros(len(sides), bool)
+    jumps = np.zeros(len(sides), bool)
+    if not (kinds > 0).any():  # all bodies are alike
+        return jumps
+    order = np.argsort(sides, axis=1)
     sides, kinds = (np.take_along_axis(values, order, axis=1) for values in (sides, kinds))
     place = np.unique(sides, axis=0, return_inverse=True)[1].reshape(-1)
     for j in np.flatnonzero(np.bincount(place)[place] > 1).tolist():

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -36,7 +37,7 @@ class DisplacedSurfaces:
     state: BoundaryState
     tools: Mapping[str, Array]
 
-    @property
+    @cached_property
     def surfaces(self) -> dict[str, AnyShape]:
         """Surfaces by zone; a deflected contour has no gap at other places than the nodes of its own zone."""
         zones = self.problem.zones.items()
@@ -82,7 +83,8 @@ class DisplacedSurfaces:
         surface = self.surfaces[zone]
         if isinstance(surface, BodySurface) and surface.elastic:
             return self._motion_of_body(surface, points, inward)
-        return self.way_of_tool(zone).motion_of(points - surface.way.step)
+        way = self.way_of_tool(zone)
+        return np.zeros_like(points) if way == AS_DRAWN else way.motion_of(points - surface.way.step)
 
     def way_of_tool(self, zone: str) -> Way:
         """Motion of the tool of a zone; none of a surface that is no tool."""

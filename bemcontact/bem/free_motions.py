@@ -306,8 +306,9 @@ def _along_walls(motions: Array, normals: Sequence[Array]) -> Array:
     for number, own in enumerate(normals):
         ways = np.eye(motions.shape[1])[3 * number : 3 * number + 2]
         rows = [np.flatnonzero((abs(motions - way) <= UNSEEN).all(axis=1)) for way in ways]
-        across = _axis_of_walls(own[own.any(axis=1)])
-        if across is not None and all(len(found) == 1 for found in rows):
+        if not all(len(found) == 1 for found in rows):
+            continue
+        if (across := _axis_of_walls(own[own.any(axis=1)])) is not None:
             along = np.array([across[1], -across[0]])
             motions[np.concatenate(rows)] = np.array([along, across]) @ ways
     return motions

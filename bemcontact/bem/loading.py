@@ -242,6 +242,8 @@ def case_loadings(problem: Problem, mesh: Mesh) -> list[Loading]:
 def combined(loadings: Sequence[Loading], factors: Sequence[float]) -> Loading:
     """The sum of loadings with factors."""
     first = loadings[0]
+    if [*factors] == [1.0]:
+        return first
     values = [loading.values for loading in loadings]
     parts = [loading.particular for loading in loadings]
     return Loading(

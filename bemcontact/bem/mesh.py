@@ -219,8 +219,9 @@ def build(problem: Problem) -> Mesh:
             first = len(edge_of)
             for edge in loop:
                 fractions = division.fractions[edge.name]
-                starts.append(edge.points(fractions[:, 0]))
-                middles.append(edge.points(fractions[:, 1]))
+                points = edge.points(fractions[:, :2].T.ravel())
+                starts.append(points[: len(fractions)])
+                middles.append(points[len(fractions) :])
                 edge_of += [edge.name] * len(fractions)
                 part_of += [number] * len(fractions)
             after += [*range(first + 1, len(edge_of)), first]
@@ -267,12 +268,12 @@ def along_curve(edge: Edge) -> tuple[Array, Array, Array, Along]:
 def connected(starts: Array, middles: Array, after: IntArray, edge_of: Sequence[str]) -> Mesh:
     """Make a mesh from start and middle nodes (m, 2) [L], the element (m,) after each element, and m names of edges."""
     m = len(starts)
-    names = tuple(dict.fromkeys(edge_of))
+    numbers = {name: number for number, name in enumerate(dict.fromkeys(edge_of))}
     return Mesh(
         nodes=np.vstack([starts, middles]),
         elements=np.column_stack([np.arange(m), m + np.arange(m), after]),
-        edge=np.array([names.index(name) for name in edge_of]),
-        edge_names=names,
+        edge=np.array([numbers[name] for name in edge_of]),
+        edge_names=tuple(numbers),
     )
 
 

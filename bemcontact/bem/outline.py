@@ -60,11 +60,13 @@ class Outline:
         fractions, step = self.mesh.fractions, SAMPLES[-1] / NODES[1]
         local, taken = np.tile(SAMPLES, (len(fractions), 1)), np.zeros((len(fractions), len(SAMPLES)))
         taken[:, NODES] = np.inf
+        zones = [(zone.surface, self.problem.edges_of(name)) for name, zone in self.problem.zones.items()]
         for number, edge in enumerate(self.edges):
             own = np.flatnonzero(self.mesh.edge == number)
-            for name, zone in self.problem.zones.items():
-                narrow = _narrow_places(edge, zone.surface, paired=edge.name in self.problem.edges_of(name))
-                places = np.array([*narrow], float)
+            for surface, touching in zones:
+                places = np.array([*_narrow_places(edge, surface, paired=edge.name in touching)], float)
+                if not len(places):
+                    continue
                 elements = own[np.minimum(np.searchsorted(fractions[own, 2], places), len(own) - 1)]
                 first, _, last = fractions[elements].T
                 xi = (2 * (places - first) / (last - first) - 1)[:, None]

@@ -122,6 +122,8 @@ def free_rigid_motions(mesh: Mesh, held: BoundaryValues, radius: float | None = 
 def _stretched(motions: RigidMotions, mesh: Mesh, stiffness: Array) -> Array:
     """Displacement (r, k) along each direction in which a place has springs, however stiff they are."""
     places = stiffness.any(axis=(2, 3))
+    if not places.any():
+        return np.zeros((0, len(motions)))
     size, ways = np.linalg.eigh(stiffness[places])  # (q, 2), (q, 2, 2) with the directions in columns
     along = np.einsum("qxi,qxk->qik", ways, motions.displacement(mesh.nodes[mesh.elements[places]]))
     return along[size > UNSPRUNG * size[:, 1:]]

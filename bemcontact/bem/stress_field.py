@@ -7,7 +7,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
+from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray, magnitudes
 from bemcontact.bem import reference_element
 from bemcontact.bem.boundary_gradient import BoundaryFields
 from bemcontact.bem.interior import Interior
@@ -231,7 +231,7 @@ class StressField:
         elements = np.arange(len(self.mesh.elements))
         curve = self.outline.places(elements, np.tile(DEVIATION, (len(elements), 1))).points
         between = reference_element.values(DEVIATION) @ self.mesh.nodes[self.mesh.elements]
-        return SLACK * np.hypot(*np.moveaxis(curve - between, 2, 0)).max(axis=1) + NEARLY * self.mesh.size
+        return SLACK * magnitudes(curve - between).max(axis=1) + NEARLY * self.mesh.size
 
     def _beyond_curve(self, points: Array, element: IntArray, xi: Array) -> Array:
         """How far points (k, 2) are beyond the curve [L] near places of it, along its normal; negative inside."""

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
 from bemcontact.bem.boundary_values import BoundaryState
@@ -140,7 +140,7 @@ class SurfaceGaps(DisplacedSurfaces):
         paired = {name: in_zones[names.index(name)].copy() for name in self.surfaces}
         for (zone, own), (name, held) in permutations(self.held.items(), 2):
             if tools.get(name) == tools.get(zone):
-                apart = np.hypot(*np.moveaxis(held.normals - own.normals, 2, 0)) > ALIKE
+                apart = magnitudes(held.normals - own.normals) > ALIKE
                 apart |= abs(held.gap - own.gap) > ALIKE * self.problem.size
                 paired[zone] |= in_zones[names.index(name)] & ~apart.any(axis=1)
         return paired
@@ -218,9 +218,9 @@ class SurfaceGaps(DisplacedSurfaces):
         beside = np.zeros(places.shape[:-1], bool)
         if not isinstance(surface, Polyline | BodySurface):
             return beside
-        moved = np.hypot(*np.moveaxis(self._against(zone, elements), 2, 0))
+        moved = magnitudes(self._against(zone, elements))
         for corner in surface.points if isinstance(surface, Polyline) else surface.ridges:
-            beside |= np.hypot(*np.moveaxis(places - corner, 2, 0)) <= moved
+            beside |= magnitudes(places - corner) <= moved
         if isinstance(surface, Polyline):
             return beside & (moved <= LITTLE * self.problem.size)
         return beside | self.beside_groove(zone, places, moved)
@@ -230,11 +230,13 @@ class SurfaceGaps(DisplacedSurfaces):
 
         There they are judged on the other face.
         """
-        mesh, paired = self.outline.mesh, self.paired[zone]
-        moved = np.hypot(*np.moveaxis(self._against(zone, elements), 2, 0))
-        places, beside = self.outline.sampled(elements).points, np.zeros(moved.shape, bool)
-        for corner in np.flatnonzero(paired & paired[mesh.before] & (mesh.turns < -SMOOTH)):
-            beside |= np.hypot(*np.moveaxis(places - mesh.nodes[corner], 2, 0)) <= moved
+        mesh, paired, places = self.outline.mesh, self.paired[zone], self.outline.sampled(elements).points
+        corners, beside = paired & paired[mesh.before] & (mesh.turns < -SMOOTH), np.zeros(places.shape[:-1], bool)
+        if not corners.any():
+            return beside
+        moved = magnitudes(self._against(zone, elements))
+        for corner in np.flatnonzero(corners):
+            beside |= magnitudes(places - mesh.nodes[corner]) <= moved
         return beside
 
     def beside_groove(self, zone: str, places: Array, moved: Array) -> BoolArray:
@@ -280,8 +282,8 @@ class SurfaceGaps(DisplacedSurfaces):
                 depth[crossing.sample] = max(depth[crossing.sample], crossing.depth)
                 local[crossing.sample] = crossing.local
             else:
-                away = np.hypot(*np.moveaxis(at.points - crossing.place, 2, 0))
-                moved = np.hypot(*np.moveaxis(self._against(zone, elements), 2, 0))
+                away = magnitudes(at.points - crossing.place)
+                moved = magnitudes(self._against(zone, elements))
                 depth[~turned & (away <= BESIDE * moved)] = -np.inf
         ended = [_opposite(end, at.points - before[..., None] * normals, normals, flush) for end in ends]
         sure = depth > self.second_order(zone)
@@ -302,7 +304,7 @@ class SurfaceGaps(DisplacedSurfaces):
             for own in np.flatnonzero(paired & ~paired[neighbor]).tolist():
                 normal, corner = self.held[zone].normals[own, last], self.state.points[own, last]
                 slides = abs(cross(normal, motion))
-                result[np.hypot(*np.moveaxis(places - corner, 2, 0)) <= slides] = normal
+                result[magnitudes(places - corner) <= slides] = normal
         return result
 
     def _slides(self, zone: str, surface: BodySurface, places: Array) -> BoolArray:
@@ -316,7 +318,7 @@ class SurfaceGaps(DisplacedSurfaces):
             nodes = self.state.points[self.paired[zone]].reshape(-1, 2)
             paired = surface.feet(nodes).points
             corners, which = np.unique(feet.points[beside], axis=0, return_inverse=True)
-            away = np.hypot(*np.moveaxis(corners[:, None] - paired, 2, 0)).min(axis=1, initial=np.inf)
+            away = magnitudes(corners[:, None] - paired).min(axis=1, initial=np.inf)
             beside[beside] = (away <= FLUSH * self.problem.size)[which.ravel()]
         return beside.reshape(places.shape[:-1])
 
@@ -374,7 +376,8 @@ class SurfaceGaps(DisplacedSurfaces):
         """Where the surface is taken to end: its straight face as drawn goes on along the edge beyond the zone."""
         mesh, ends, surface = self.outline.mesh, list[FaceEnd](), self.surfaces[zone]
         elastic = isinstance(surface, BodySurface) and surface.elastic
-        drawn = self.held[zone] if elastic else self._holding(surface.after(AS_DRAWN))
+        as_drawn = elastic or surface.way == AS_DRAWN
+        drawn = self.held[zone] if as_drawn else self._holding(surface.after(AS_DRAWN))
         for last, neighbor in ((2, mesh.elements[:, 2]), (0, mesh.before)):
             for own in np.flatnonzero(paired & ~paired[neighbor]).tolist():
                 beyond, at = int(neighbor[own]), self.state.points[own, last]
@@ -499,7 +502,7 @@ class SurfaceGaps(DisplacedSurfaces):
             (self.state.points, self.undeformed),
             (self.state.points + self.state.displacement, self.exact),
         ):
-            length = np.hypot(*np.moveaxis(np.diff(moved, axis=1), 2, 0)).sum(axis=1)
+            length = magnitudes(np.diff(moved, axis=1)).sum(axis=1)
             near |= gap(zone, moved[:, 1]).gap <= length
         return near
 

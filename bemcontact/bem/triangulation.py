@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import Delaunay, KDTree
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
 
@@ -97,7 +97,7 @@ def triangulation(mesh: Mesh) -> Triangulation:
     corners = points[triangles]
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     doubled = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-    longest = np.hypot(*np.moveaxis(corners - np.roll(corners, 1, axis=1), 2, 0)).max(axis=1)
+    longest = magnitudes(corners - np.roll(corners, 1, axis=1)).max(axis=1)
     triangles = np.where(doubled[:, None] < 0, triangles[:, ::-1], triangles)
     kept = (abs(doubled) > FLAT * longest**2) & within(corners.mean(axis=1), rim, rim[pieces.after])
     return Triangulation(points=points, triangles=triangles[kept], element=pieces.element, xi=pieces.ends[:, 0])

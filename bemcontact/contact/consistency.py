@@ -55,7 +55,7 @@ def contact_shape(contact: Any) -> tuple[int, int]:
 def ensure_independent(rigid_motions: Array) -> None:
     """Refuse motions (n, k) of which a combination moves no contact point."""
     sizes = np.abs(rigid_motions).max(axis=0, initial=0.0)
-    if not sizes.all() or (len(sizes) and np.linalg.matrix_rank(rigid_motions / sizes) < len(sizes)):
+    if not sizes.all() or (len(sizes) > 1 and np.linalg.matrix_rank(rigid_motions / sizes) < len(sizes)):
         raise ProblemError("rigid_motions needs independent columns: a motion that no point sees holds nothing")
 
 

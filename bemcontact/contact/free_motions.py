@@ -241,7 +241,8 @@ def stiffness_rows(
     n, k = R.shape
     U, T = scales
     row_scale = np.abs(ell).max(axis=0, initial=0.0)
-    bordered = np.block([[compliance * (T / U), R], [(ell / row_scale).T, np.zeros((k, k))]])
+    bordered = np.zeros((n + k, n + k))
+    bordered[:n, :n], bordered[:n, n:], bordered[n:, :n] = compliance * (T / U), R, (ell / row_scale).T
     try:
         inverse = np.linalg.inv(bordered.T).T.astype(float)  # accurate as a left inverse, which is how K is used
     except np.linalg.LinAlgError:

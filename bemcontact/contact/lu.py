@@ -3,12 +3,15 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Self
+from typing import Any, Self
 
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.threads import one_thread
+
+lange, getrf, gecon, getrs, laswp = get_lapack_funcs(("lange", "getrf", "gecon", "getrs", "laswp"), dtype=float)
+trsm: Any = get_blas_funcs("trsm", dtype=float)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -31,7 +34,6 @@ class LU:
     @classmethod
     def of(cls, matrix: Array, *, overwrite: bool = False) -> Self:
         """Factorize a matrix (m, m); `overwrite` reuses the memory of one in Fortran order."""
-        lange, getrf = get_lapack_funcs(("lange", "getrf"), dtype=float)
         norm = lange("1", matrix)
         with one_thread.lifted(len(matrix) ** 3 / 3):
             factors, pivots, singular = getrf(matrix, overwrite_a=overwrite)
@@ -40,7 +42,6 @@ class LU:
     @cached_property
     def reciprocal_condition(self) -> float:
         """Estimate in the 1-norm; zero if a pivot is zero."""
-        (gecon,) = get_lapack_funcs(("gecon",), dtype=float)
         return 0.0 if self.singular else float(gecon(self.factors, self.norm)[0])
 
     def solve(self, right: Array, residual: Callable[[Array], Array]) -> Array:
@@ -48,21 +49,18 @@ class LU:
 
         `residual` gives the right sides less matrix times its argument; its result may be overwritten.
         """
-        (substitute,) = get_lapack_funcs(("getrs",), dtype=float)
-        x = substitute(self.factors, self.pivots, right)[0]
-        return x + substitute(self.factors, self.pivots, residual(x), overwrite_b=True)[0]
+        x = getrs(self.factors, self.pivots, right)[0]
+        return x + getrs(self.factors, self.pivots, residual(x), overwrite_b=True)[0]
 
     def forward(self, right: Array) -> Array:
         """L⁻¹P times right sides (m, s)."""
-        (exchange,), (substitute,) = get_lapack_funcs(("laswp",), dtype=float), get_blas_funcs(("trsm",), dtype=float)
-        exchanged = exchange(right, self.pivots)
+        exchanged = laswp(right, self.pivots)
         with one_thread.lifted(exchanged.size * len(exchanged) / 2):
-            return substitute(1.0, self.factors, exchanged, lower=True, diag=True, overwrite_b=True)
+            return trsm(1.0, self.factors, exchanged, lower=True, diag=True, overwrite_b=True)
 
     def backward(self, reduced: Array, last: int | None = None) -> Array:
         """The last rows (q,) or (q, s) of U⁻¹ times reduced right sides (m,) or (m, s); all rows if None."""
-        (substitute,) = get_blas_funcs(("trsm",), dtype=float)
         first = 0 if last is None else len(self.factors) - last
         own = reduced[first:] if reduced.ndim == 2 else reduced[first:, None]
         with one_thread.lifted(own.size * len(own) / 2):
-            return substitute(1.0, self.factors[first:, first:], own).reshape(-1, *reduced.shape[1:])
+            return trsm(1.0, self.factors[first:, first:], own).reshape(-1, *reduced.shape[1:])

@@ -8,7 +8,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.problems.curves import Curve, Edge, Segment, cross
 from bemcontact.problems.edge_places import (
     CORNER,
@@ -342,7 +342,7 @@ class BodySurface:
         beside = np.zeros(motion.shape, bool)
         for corner, (one, other) in self._grooves:
             sine = abs(cross(one, other)) if one @ other < 0 else 1.0
-            beside |= sine * np.hypot(*np.moveaxis(points - corner, -1, 0)) <= motion
+            beside |= sine * magnitudes(points - corner) <= motion
         return beside
 
     @cached_property

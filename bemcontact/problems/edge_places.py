@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.problems.curves import Edge, Segment, cross
 
 STEEPEST = 0.5
@@ -14,8 +14,8 @@ TIE = 1e-9
 """Difference of a cosine from it that is round-off: boundaries at exactly this angle form no pairs, on any side."""
 CORNER = 1e-6
 """Sine of the angle between two edges from which their joint is a corner."""
-STEPS = 30
-"""Largest number of Newton's steps to a pair."""
+STEPS = 20
+"""Largest number of Newton's steps to a pair: the largest turns take eleven over half a circle."""
 SETTLED = 1e-9
 """Change of the fraction of an edge by one of them after which the next one is round-off."""
 LARGEST_TURN = 0.3
@@ -69,7 +69,7 @@ def nearest_on(edges: Sequence[Edge], points: Array) -> EdgePlaces:
     """Places of edges that are nearest to points (k, 2) [L]."""
     fractions = np.array([edge.curve.nearest(points) for edge in edges])
     places = np.array([edge.points(at) for edge, at in zip(edges, fractions, strict=True)])
-    number = np.hypot(*np.moveaxis(points - places, 2, 0)).argmin(axis=0)
+    number = magnitudes(points - places).argmin(axis=0)
     return places_at(edges, number, fractions[number, np.arange(len(points))])
 
 
@@ -120,7 +120,9 @@ class NormalWeight(NamedTuple):
 
     def at(self, points: Array) -> Array:
         """Weight (k,) at points (k, 2) [L]."""
-        away = np.hypot(*np.moveaxis(points[:, None] - self.corners[:, :2], 2, 0)) / self.corners[:, 2]
+        if not len(self.corners):
+            return np.full(len(points), self.most)
+        away = magnitudes(points[:, None] - self.corners[:, :2]) / self.corners[:, 2]
         return self.most * np.prod(1 - (1 - np.minimum(away, 1.0) ** 2) ** 4, axis=1)
 
 
@@ -144,7 +146,7 @@ def paired_on(
 
     The common normal is the mean of the normal `own` (k, 2) into the body of the point and of that of the place, with
     the weights of both boundaries. The search begins at a place near the pair. Where no place on its edge forms one,
-    the others are looked at.
+    the other edges are looked at.
 
     Returns
     -------
@@ -153,7 +155,7 @@ def paired_on(
     edge, fraction, met = start.edge.copy(), start.fraction.copy(), np.zeros(len(points), bool)
     weighted, other_weight = weights[0].at(points)[:, None] * own, weights[1]
     for other in (None, *range(len(edges))):
-        rows = np.flatnonzero(~met)
+        rows = np.flatnonzero(~met if other is None else ~met & (start.edge != other))
         if other is not None and len(rows):
             edge[rows], fraction[rows] = other, edges[other].curve.nearest(start.points[rows])
         for i in sorted({*edge[rows].tolist()}):

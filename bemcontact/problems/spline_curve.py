@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 import scipy
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, magnitudes
 from bemcontact.problems.curves import Pair
 
 ORDER = 16
@@ -114,7 +114,7 @@ class SplineCurve:
     def nearest(self, points: Array) -> Array:
         """Fractions (k,) in [0, 1] of the arc length where the curve is nearest to points (k, 2)."""
         t, _ = self._turned
-        first = np.hypot(*np.moveaxis(points[:, None] - self._spline(t), 2, 0)).argmin(axis=1)
+        first = magnitudes(points[:, None] - self._spline(t)).argmin(axis=1)
         low, high, found = t[np.maximum(first - 1, 0)], t[np.minimum(first + 1, len(t) - 1)], t[first]
         for _ in range(60):
             offset, velocity, bend = self._spline(found) - points, self._spline(found, 1), self._spline(found, 2)

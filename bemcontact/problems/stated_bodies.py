@@ -167,8 +167,8 @@ class StatedBodies(SpecModel, Drawn):
     @property
     def size(self) -> float:
         """Diameter of the bounding box of the elastic bodies [L]."""
-        boxes = np.vstack([part.boundary.box for part in self.parts])
-        return float(np.hypot(*np.ptp(boxes, axis=0)))
+        x, y = zip(*(corner for part in self.parts for corner in part.boundary.box), strict=True)
+        return float(np.hypot(max(x) - min(x), max(y) - min(y)))
 
     @property
     def volume_loads(self) -> list[tuple[Loads, ...]]:

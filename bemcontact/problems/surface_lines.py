@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 from pydantic import Field, PrivateAttr, model_validator
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.problems.curves import Curve, cross
 from bemcontact.problems.loops import first_meeting
 from bemcontact.problems.validation import Point, SpecModel, invalid
@@ -65,6 +65,8 @@ class Faces(NamedTuple):
 
     def after(self, way: Way, points: Array) -> "Faces":
         """Those of a surface after a way, at points (k, 2) [L], with gaps before it: less the way those there."""
+        if way == AS_DRAWN:
+            return self
         normals, faces = way.turned(self.normals), way.turned(self.faces)
         return Faces(self.gap + np.einsum("ksx,kx->ks", normals, way.motion_at(points)), normals, faces)
 
@@ -235,7 +237,7 @@ class Polyline(LineSurface):
         """
         nearest = self._nearest(points)[0]
         ends = np.stack([nearest, nearest + 1], axis=1)
-        distances = np.hypot(*np.moveaxis(points[:, None] - self.sides.corners[ends], 2, 0))
+        distances = magnitudes(points[:, None] - self.sides.corners[ends])
         distances[~np.pad(~self._concave, 1)[ends]] = np.inf
         return np.clip(ends - 1, 0, len(self.points) - 3), distances
 
@@ -275,13 +277,13 @@ class Polyline(LineSurface):
         held = np.clip(along, low, high)
         feet = corners[:-1] + held[:, :, None] * directions
         beyond, rows = np.abs(held - along) > slack, np.arange(len(points))
-        nearest = np.argmin(np.hypot(*np.moveaxis(points[:, None] - feet, 2, 0)) + slack * beyond, axis=1)
+        nearest = np.argmin(magnitudes(points[:, None] - feet) + slack * beyond, axis=1)
         corner = np.where(beyond[rows, nearest], nearest + (along > high)[rows, nearest], -1)
         return nearest, corner, feet[rows, nearest]
 
     def _nearest_corner(self, points: Array) -> tuple[IntArray, Array]:
         """Nearest inner corner (k,), counted from 0, and its distance (k,) [L]."""
-        distances = np.hypot(*np.moveaxis(np.asarray(points)[:, None] - self.sides.corners[1:-1], 2, 0))
+        distances = magnitudes(np.asarray(points)[:, None] - self.sides.corners[1:-1])
         which = distances.argmin(axis=1)
         return which, distances[np.arange(len(which)), which]
 
@@ -370,7 +372,7 @@ class Spline(SmoothSurface):
         """Parameters (k,) of the nearest points, beyond the ends on the straight continuations."""
         t = np.stack([self._along_end(points, 0), self._on_curve(points), self._along_end(points, -1)], axis=1)
         feet, _ = self._at(t)
-        nearest = np.argmin(np.hypot(*np.moveaxis(points[:, None] - feet, 2, 0)), axis=1)
+        nearest = np.argmin(magnitudes(points[:, None] - feet), axis=1)
         return t[np.arange(len(points)), nearest]
 
     def _at(self, t: Array) -> tuple[Array, Array]:
@@ -493,7 +495,7 @@ def sees_ridge(points: Array, face: IntArray, ridge: Array, body: Array, held: A
     lies = beside & (_dot(held, body) >= LIES_ON)
     for number in np.unique(face[lies]).tolist():
         flat, own = points[lies & (face == number)], np.flatnonzero(face == number)
-        nearest = np.hypot(*np.moveaxis(flat[:, None] - ridge[own], 2, 0)).min(axis=0)
+        nearest = magnitudes(flat[:, None] - ridge[own]).min(axis=0)
         seen[own] = away[own] <= nearest
     return seen
 

@@ -47,8 +47,8 @@ class Way(NamedTuple):
 
     def motion_of(self, points: Array) -> Array:
         """Displacement (..., 2) [L] of places (..., 2) as drawn, linear in the turn."""
-        x, y = np.moveaxis(points - self.about, -1, 0)
-        return self.step + self.turn * np.stack([-y, x], axis=-1)
+        lever = points - self.about
+        return self.step + self.turn * np.stack([-lever[..., 1], lever[..., 0]], axis=-1)
 
     def motion_at(self, points: Array) -> Array:
         """Displacement (..., 2) [L] by which points (..., 2) are come to, linear in the turn."""

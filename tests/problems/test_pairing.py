@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from several_bodies import HELD, block, circle, elastic, polygon, problem, rigid
 
+from bemcontact.problems import edge_places
 from bemcontact.problems.body_surface import BodySurface
 
 
@@ -183,6 +184,18 @@ def test_edges_that_cannot_come_to_touch_form_no_pairs():
     bodies = {"up": elastic(DISK), "low": elastic(block((-40, 40), (-9, 0)))}
     (part,) = problem(bodies, accuracy=0.01, touch=["up/rim", "low/top"]).opposite("touch")
     assert (part.low, part.high) == (pytest.approx(7 / 12), pytest.approx(11 / 12))  # 30 degrees below the horizontal
+
+
+def test_an_edge_without_a_pair_is_looked_at_once(monkeypatch):
+    """Beside the end of a narrow edge no place of it is on a common normal, whatever the start on this edge."""
+    bodies = {"up": elastic(DISK), "low": elastic(block((-1, 1), (-9, 0)))}
+    surface = problem(bodies, accuracy=0.01, touch=["up/rim", "low/top"]).zones["touch"].surface
+    assert isinstance(surface, BodySurface)
+    searched, search = [], edge_places._on_edge
+    monkeypatch.setattr(edge_places, "_on_edge", lambda edge, *at: searched.append(edge.name) or search(edge, *at))
+    found = surface.pairs(np.array([[3.0, 1.0]]))
+    assert found.corner.all()
+    assert searched == ["low/top"]
 
 
 @pytest.mark.parametrize("pair", [["up/rim", "low/top"], ["low/top", "up/rim"]])
