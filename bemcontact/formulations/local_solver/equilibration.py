@@ -146,8 +146,8 @@ def _entries(statement: Statement) -> tuple[Array, Array]:
 
 def _logarithms(sizes: Array) -> tuple[Array, Array]:
     """One where there is a number, zero where there is none; and binary logarithms of the numbers."""
-    absent = sizes == 0.0
-    return 1.0 - absent, np.log2(sizes + absent)
+    present = sizes > 0.0
+    return present.astype(float), np.log2(sizes, out=np.zeros(sizes.shape), where=present)
 
 
 def _smaller_bounds(bounds: Array) -> Array:

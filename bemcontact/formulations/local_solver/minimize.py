@@ -117,9 +117,9 @@ def _second_phase(progress: SearchState, descent: Descent, renewals: int) -> Fin
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
     if outcome.ending is Ending.INACCURATE:
         return Restart(sides=descent.working.sides, failed=True)
-    of_held = np.array([descent.multipliers, descent.zeros, descent.sizes])
-    multipliers, zeros, sizes = descent.working.of_all(of_held)
-    conditions = first_order(progress, descent.working.held, multipliers, zeros, sizes)
+    working = descent.working
+    multipliers, zeros = working.of_all(descent.multipliers), working.of_all(descent.zeros)
+    conditions = first_order(progress, working.held, multipliers, zeros, lambda: working.of_all(descent.sizes))
     if (progress.worn or conditions.doubtful) and renewals < RENEWALS:
         return Restart(sides=descent.working.sides, failed=False)
     if not conditions.holds:
@@ -130,7 +130,7 @@ def _second_phase(progress: SearchState, descent: Descent, renewals: int) -> Fin
 def _inwards(progress: SearchState, ray: Array) -> None:
     """Move along the ray until it no longer reduces a violation; a violation within tolerance may be a large part."""
     speed = np.abs(progress.statement.values(ray))
-    steps = progress.statement.violation(progress.values) / speed
+    steps = progress.violation / speed
     step = steps[speed > PARALLEL].max(initial=0.0)
     if step > 0.0:
         progress.place(progress.x + step * ray)
@@ -174,13 +174,17 @@ def _strict(descent: Descent, conditions: FirstOrder) -> bool:
     if working.temporary or np.count_nonzero(conditions.weak) or np.count_nonzero(working.held != conditions.strong):
         return False
     W, N, Z, H = working.W, working.N, hessian.Z, descent.progress.statement.H
-    inverse = working.size == 0 or largest(W.dot(N) - np.eye(working.size)) < 1e-6
-    complete = hessian.size + working.number == working.free.size
+    if hessian.size + working.number != working.free.size or (working.size and not _off_identity(W.dot(N)) < 1e-6):
+        return False
     if hessian.size == 0:
-        return inverse and complete
-    null = largest(W @ Z) <= 1e-9 * largest(Z)
-    definite = largest(Z.T @ (H @ Z) - np.eye(hessian.size)) < 1e-3
-    return inverse and null and definite and complete
+        return True
+    return largest(W.dot(Z)) <= 1e-9 * largest(Z) and _off_identity(Z.T.dot(H.dot(Z))) < 1e-3
+
+
+def _off_identity(matrix: Array) -> float:
+    """The largest entry of a square matrix from which the identity is subtracted."""
+    matrix.reshape(-1)[:: len(matrix) + 1] -= 1.0
+    return largest(matrix)
 
 
 def _minimizer(descent: Descent, conditions: FirstOrder, multipliers: Array, status: QPStatus) -> Finding:
@@ -325,6 +329,6 @@ def _result(stated: Statement, scales: Scales, progress: SearchState, finding: F
         weakly_active=finding.weak,
         ray=None if finding.ray is None else scales.variables * finding.ray,
         certificate=None if finding.certificate is None else scales.multipliers(finding.certificate),
-        violation=float(stated.violation(stated.values(x)).max()),
+        violation=largest(stated.violation(stated.values(x))),
         log=tuple(progress.lines),
     )

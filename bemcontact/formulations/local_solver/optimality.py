@@ -6,6 +6,7 @@ A first-order point of a quadratic program is a local minimizer exactly if H is 
 general (Murty and Kabadi 1987), so the search is bounded and may end undecided.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -258,13 +259,13 @@ class FirstOrder:
 
 
 def first_order(
-    progress: SearchState, working: BoolArray, multipliers: Array, zeros: Array, terms: Array
+    progress: SearchState, working: BoolArray, multipliers: Array, zeros: Array, terms: Callable[[], Array]
 ) -> FirstOrder:
     """Recompute the first-order conditions at the point; a multiplier below its entry of `zeros` (n + m,) is zero.
 
-    `terms` (n + m,) are the sizes of what multipliers are made of. A multiplier of the wrong sign that is zero only
-    because points far away had a large rounding is doubtful. A constraint that is not in the `working` set is active if
-    its bound is as near as rounding.
+    `terms` returns the sizes (n + m,) of what multipliers are made of; it is called if a sign is wrong. A multiplier of
+    the wrong sign that is zero only because points far away had a large rounding is doubtful. A constraint that is not
+    in the `working` set is active if its bound is as near as rounding.
     """
     statement, n = progress.statement, progress.x.size
     values = statement.values(progress.x)
@@ -283,19 +284,23 @@ def first_order(
         sides[thin] = np.where(multipliers[thin] > 0.0, -1, 1)
     wrong = np.where(held, sides * multipliers, size)
     wrong[statement.equality] = 0.0
-    held[n:] &= statement.absolute[2].dot(np.ones(n)) > 0.0  # a row of zeros holds nothing
+    if statement.A.size:
+        held[n:] &= statement.absolute[2].dot(np.ones(n)) > 0.0  # a row of zeros holds nothing
     strong = held & (statement.equality | (size > WEAK * zeros))
     active = working | (np.minimum(below, above) <= sharp)
     tolerated = 2.0 * zeros
     tolerated[n:] = np.maximum(tolerated[n:], 2.0 * progress.zero)
-    likely = np.where(zeros > progress.zero, DOUBT_OF_ROUGH, DOUBT)
+    doubtful = False
+    if np.count_nonzero(wrong > 0.0):
+        likely = np.where(zeros > progress.zero, DOUBT_OF_ROUGH, DOUBT)
+        doubtful = bool(np.count_nonzero(wrong > np.fmin(likely * zeros, SEEN * terms())))
     return FirstOrder(
         holds=feasible and np.count_nonzero(stationary) == n and np.count_nonzero(wrong <= tolerated) == zeros.size,
         strong=strong,
         weak=held & ~strong & active,
         sides=sides,
         size=size,
-        doubtful=bool(np.count_nonzero(wrong > np.fmin(likely * zeros, SEEN * terms))),
+        doubtful=doubtful,
     )
 
 

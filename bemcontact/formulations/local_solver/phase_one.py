@@ -9,6 +9,7 @@ from math import sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.formulations.local_solver.factorizations import dot
 from bemcontact.formulations.local_solver.progress import SearchState
 from bemcontact.formulations.local_solver.ratio_test import BlockingConstraint, nearest, side_reached
 from bemcontact.formulations.local_solver.statement import INFINITY, Sides, Statement
@@ -31,7 +32,7 @@ def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> t
         working = WorkingSet(statement, sides, complete=False)
         near = working.onto(progress.x)
     progress.place(near)
-    while (violated := (signs := _signs_of_others(progress, working)).dot(signs)) or progress.drifted:
+    while (violated := dot(signs := _signs_of_others(progress, working), signs)) or progress.drifted:
         if not violated:
             progress.place(working.onto(progress.x))
             continue
@@ -39,14 +40,14 @@ def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> t
         zero = fineness * progress.options.optimality_tolerance * sqrt(violated)
         multipliers = working.multipliers(gradient)
         reduced = multipliers[:n] * working.free if working.number < n else None
-        if reduced is None or reduced.dot(reduced) <= zero**2:
+        if reduced is None or dot(reduced, reduced) <= zero**2:
             place = wrong_sign(working, multipliers, zero, least_index=progress.least_index)
             if place is None:
                 return working, _certificate(working, signs, multipliers)
             if progress.exhausted:
                 return working, None
             dropped, along = working.drop(place)
-            direction = -float(along.dot(gradient)) * along
+            direction = -dot(along, gradient) * along
         elif progress.exhausted:
             return working, None
         else:
@@ -90,7 +91,7 @@ def _certificate(working: WorkingSet, signs: Array, multipliers: Array) -> Array
 
 def _step(progress: SearchState, working: WorkingSet, signs: Array, direction: Array, dropped: int | None) -> bool:
     """Move along the direction to the constraint that ends the step, and hold it; False if there is none."""
-    length = sqrt(direction.dot(direction))
+    length = sqrt(dot(direction, direction))
     along = working.values(direction)
     wall = nearest(progress, along, length, working.held | signs.astype(bool), working)
     inner = _breakpoint(progress, signs, along, length, INFINITY if wall is None else wall.step)
@@ -100,8 +101,7 @@ def _step(progress: SearchState, working: WorkingSet, signs: Array, direction: A
     progress.move(along, block.step, length)
     if working.add(block.constraint, block.side) is None:
         return False
-    value = float(progress.statement.violation(progress.values).sum())
-    progress.write(1, value, block.step, block.constraint, dropped, working.number, 0)
+    progress.write(1, float(progress.violation.sum()), block.step, block.constraint, dropped, working.number, 0)
     return True
 
 
@@ -109,28 +109,26 @@ def _breakpoint(
     progress: SearchState, signs: Array, along: Array, length: float, furthest: float
 ) -> BlockingConstraint | None:
     """The violated constraint at which the sum of infeasibilities stops falling, within a furthest step."""
-    statement, falling = progress.statement, -signs * along
-    towards = (falling > 1e-10 * length).nonzero()[0]
-    near, speed = statement.violation(progress.values)[towards], falling[towards]
-    entering = near / speed
-    if entering.size == 0 or entering.item(entering.argmin()) > furthest:
+    statement, rising = progress.statement, signs * along
+    towards = (rising < -1e-10 * length).nonzero()[0]
+    near, speeds = progress.violation[towards], -rising[towards]
+    entering = (near / speeds).tolist()
+    if not entering or min(entering) > furthest:
         return None
     width = statement.upper[towards] - statement.lower[towards]
-    steps = np.concatenate([entering, (near + width) / speed])
-    speeds = np.concatenate([speed, speed])
-    order = steps.argsort(kind="stable")
-    slope = float(signs.dot(along))
-    turned = int(speeds[order].cumsum().searchsorted((1e-12 - 1.0) * slope))
-    if turned == order.size:
+    steps, falls = entering + ((near + width) / speeds).tolist(), speeds.tolist()
+    at, fall = 0, (1.0 - 1e-12) * -dot(signs, along)
+    for at in sorted(range(len(steps)), key=steps.__getitem__):
+        fall -= falls[at % len(falls)]  # behind a breakpoint the sum falls less
+        if fall <= 0.0:
+            break
+    step = steps[at]
+    if fall > 0.0 or step > furthest or step == INFINITY:
         return None
-    at = int(order[turned])
-    step = steps.item(at)
-    if step > furthest or step == INFINITY:
-        return None
-    constraint = int(towards[at % towards.size])
-    if statement.equality[constraint]:
+    constraint = towards.item(at % len(falls))
+    if statement.equality.item(constraint):
         side = 2
     else:
         onwards = side_reached(progress, constraint, along)
-        side = -onwards if at < towards.size else onwards
+        side = -onwards if at < len(falls) else onwards
     return BlockingConstraint(constraint, side, step)

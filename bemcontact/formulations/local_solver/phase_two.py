@@ -18,7 +18,7 @@ from math import sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.factorizations import add_rank_one, over_triangle, pivoted_cholesky
+from bemcontact.formulations.local_solver.factorizations import add_rank_one, dot, over_triangle, pivoted_cholesky
 from bemcontact.formulations.local_solver.optimality import SEEN
 from bemcontact.formulations.local_solver.progress import FINE, SearchState
 from bemcontact.formulations.local_solver.ratio_test import BlockingConstraint, nearest
@@ -54,7 +54,7 @@ class ReducedHessian:
         self.pending: Array | None = None
         self.curvature = 0.0
         if k:
-            reduced = null_space.T @ statement.H @ null_space
+            reduced = _on_basis(statement.H, null_space)
             zero = 10.0 * max(10, n) * EPS * self._top
             factor, order, rank = pivoted_cholesky(reduced, zero)
             ordered = null_space[:, order]
@@ -75,22 +75,22 @@ class ReducedHessian:
         if self.size == 0:
             return True
         slopes = gradient.dot(self.Z)
-        return float(slopes.dot(slopes)) * self._top * gradient.size <= zero**2
+        return dot(slopes, slopes) * self._top * gradient.size <= zero**2
 
     def enter(self, direction: Array) -> None:
         """Add a unit direction to the null space, to Z or as the pending one: O(n²)."""
         d, statement, Z = direction, self.statement, self.Z
         product = statement.bent(d)
-        curvature = float(d.dot(product))
+        curvature = dot(d, product)
         length = 1.0
         for _ in range(2 if self.size else 0):
             d = d - Z.dot(product.dot(Z))
             product = statement.bent(d)
-            before, curvature = curvature, float(d.dot(product))
+            before, curvature = curvature, dot(d, product)
             if abs(curvature) > 0.01 * abs(before):
                 break  # no digits were lost that a second pass would restore
         if self.size:
-            length = float(d.dot(d))
+            length = dot(d, d)
         clear = curvature == 0.0 or abs(curvature) > 1e-8 * self._top * length
         rounding = 0.0 if clear else self.statement.rounding(d)
         if curvature > rounding:
@@ -109,19 +109,19 @@ class ReducedHessian:
             self._resize(0)
             return
         along = normal.dot(self.Z)
-        length = sqrt(along.dot(along))
+        length = sqrt(dot(along, along))
         if length == 0.0:
             return
         last = self._reflect(along, length)
         if pending is not None:
-            rest = length * pending - float(normal.dot(pending)) * last
-            self.enter(rest / sqrt(rest.dot(rest)))
+            rest = length * pending - dot(normal, pending) * last
+            self.enter(rest / sqrt(dot(rest, rest)))
 
     def _reflect(self, along: Array, length: float) -> Array:
         """Reflect Z so that the normal is orthogonal to all columns but the last; remove and return that column."""
         sign = -1.0 if along[-1] > 0.0 else 1.0
         along[-1] -= sign * length
-        add_rank_one(self.Z, -2.0 / float(along.dot(along)), self.Z.dot(along), along)
+        add_rank_one(self.Z, -2.0 / dot(along, along), self.Z.dot(along), along)
         self._resize(self.size - 1)
         return sign * self._columns[:, self.size]
 
@@ -227,8 +227,8 @@ class Descent:
         loose = self.whole < 3 and working.number < n
         if loose:
             reduced = multipliers[:n] * working.free
-            rounding = 10.0 * EPS * largest(multipliers[n:])
-            large = reduced.dot(reduced) > max(0.1 * progress.zero, rounding) ** 2
+            square = dot(reduced, reduced)
+            large = square > (0.1 * progress.zero) ** 2 and square > (10.0 * EPS * largest(multipliers[n:])) ** 2
             if large and not self._rests(hessian.newton(progress.gradient)):
                 return True, None
         place = self._clearly_wrong(self._allowed(multipliers))
@@ -308,7 +308,7 @@ class Descent:
         progress, working = self.progress, self.working
         direction = self.hessian.newton(progress.gradient)
         along = working.values(direction)
-        slope, length = float(progress.gradient.dot(direction)), sqrt(direction.dot(direction))
+        slope, length = dot(progress.gradient, direction), sqrt(dot(direction, direction))
         block = nearest(progress, along, length, working.held, working)
         if block is None or block.step > 1.0:
             self.changed, self.whole = False, self.whole + 1
@@ -322,7 +322,7 @@ class Descent:
     def _follow_curvature(self, direction: Array) -> PhaseTwoEnd | None:
         """Step along the pending direction downhill to the next constraint; None if phase two goes on."""
         progress = self.progress
-        slope, curvature = float(progress.gradient.dot(direction)), self.hessian.curvature
+        slope, curvature = dot(progress.gradient, direction), self.hessian.curvature
         level = abs(slope) <= progress.zero and abs(slope) <= self._fine_slope(direction)
         if level and curvature == 0.0:
             self.working.fix(direction, FLAT)
@@ -429,6 +429,14 @@ class Descent:
         self.value += change
         progress.write(2, self.value / progress.unit, step, added, self.dropped, working.number, nonpositive)
         self.dropped, self.idle = None, 0
+
+
+def _on_basis(H: Array, basis: Array) -> Array:
+    """The form H on a basis (n, k); entries of H where the basis has unit vectors of variables."""
+    if np.count_nonzero(basis) == basis.shape[1] == basis.sum():
+        variables = basis.argmax(axis=0)
+        return H[variables[:, None], variables]
+    return basis.T @ H @ basis
 
 
 @lru_cache(maxsize=64)

@@ -6,6 +6,7 @@ from math import sqrt
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.formulations.local_solver.factorizations import dot
 from bemcontact.formulations.local_solver.result import LogLine, QPOptions
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 
@@ -81,6 +82,8 @@ class SearchState:
         chosen = options.max_iterations
         self.limit = 1000 + 20 * statement.lower.size if chosen is None else chosen
         self._traveled, self._passed, self._seen, self.far = np.zeros(self.x.size), [], None, 0.0
+        self._own: tuple[Array, Array, Array] | None = None
+        self._measured, self._violation = None, self._traveled
         self.place(self.x)
 
     @property
@@ -99,8 +102,15 @@ class SearchState:
         """Reset `traveled` and `far` after the point was computed anew from the data."""
         size = np.maximum(np.abs(self.x), 1.0)
         self._traveled = np.minimum(self.traveled, size)
-        self.far = min(self.far, sqrt(size.dot(size)))
+        self.far = min(self.far, sqrt(dot(size, size)))
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
+
+    @property
+    def violation(self) -> Array:
+        """`Statement.violation` of the values, computed once for a point."""
+        if self._measured is not self.values:
+            self._measured, self._violation = self.values, self.statement.violation(self.values)
+        return self._violation
 
     @property
     def worn(self) -> bool:
@@ -114,7 +124,7 @@ class SearchState:
 
     def loses_digits(self, x: Array) -> bool:
         """Whether rounding of this point or of one before it is more than a small part of a tolerance."""
-        return self._is_far(max(self.far, sqrt(x.dot(x))))
+        return self._is_far(max(self.far, sqrt(dot(x, x))))
 
     def _is_far(self, distance: float) -> bool:
         """Whether rounding at this distance from zero is more than a small part of a tolerance."""
@@ -123,13 +133,16 @@ class SearchState:
     @property
     def sharp(self) -> Array:
         """Distance of each constraint from its bound that may be rounding (n + m,)."""
-        return np.maximum(NEAR * self._slack, 100.0 * EPS * self.statement.terms(np.abs(self.x)))
+        return np.maximum(NEAR * self._slack, 100.0 * EPS * self._terms_of_values())
 
     def allowed(self, sharp: Array) -> Array:
         """Violation of each constraint that a claim may leave (n + m,): a small part of its own terms, or `sharp`."""
-        terms = self.statement.terms(np.abs(self.x))
-        own = OWN * np.maximum(self.statement.bound_size, OF_TERMS * terms)
+        own = OWN * np.maximum(self.statement.bound_size, OF_TERMS * self._terms_of_values())
         return np.minimum(2.0 * self.slack, np.maximum(own, sharp))
+
+    def _terms_of_values(self) -> Array:
+        """Sum of the sizes of the terms of each value (n + m,)."""
+        return self._placed if not self._steps else self.statement.terms(np.abs(self.x))
 
     def tighten(self) -> None:
         """Reduce the tolerance of the constraints, after a claim failed."""
@@ -139,14 +152,18 @@ class SearchState:
     @property
     def objective(self) -> float:
         """cᵀx + xᵀHx/2."""
-        return 0.5 * float(self.x.dot(self.gradient + self.statement.c))
+        return 0.5 * dot(self.x, self.gradient + self.statement.c)
 
     def terms(self, of_rows: Array, rows: Array) -> Array:
         """Sum of the sizes of the terms of each component of the gradient (n,), multipliers of the rows included.
 
         A component that is zero in truth is rounding of the points before it, and counts with its size.
         """
-        terms = self.statement.curved(np.maximum(np.abs(self.x), EPS * self.traveled)) + self.statement.absolute[1]
+        traveled = self.traveled
+        if self._own is None or self._own[0] is not traveled or self._own[1] is not self.x:
+            size = np.maximum(np.abs(self.x), EPS * traveled)
+            self._own = traveled, self.x, self.statement.curved(size) + self.statement.absolute[1]
+        terms = self._own[2]
         return terms + np.abs(of_rows).dot(np.abs(rows)) if of_rows.size else terms
 
     def fine_zero(self, terms: Array, rows: Array, inverse: Array, reach: Array) -> Array:
@@ -193,8 +210,9 @@ class SearchState:
         """Move to a point, and compute values, slacks and gradient there."""
         self.x, self.values, self._steps = x, self.statement.values(x), False
         size = np.abs(x)
-        self.far = max(self.far, sqrt(size.dot(size)))
-        self.slack = np.maximum(self._slack, 10.0 * EPS * self.statement.terms(size))
+        self.far = max(self.far, sqrt(dot(size, size)))
+        self._placed = self.statement.terms(size)
+        self.slack = np.maximum(self._slack, 10.0 * EPS * self._placed)
         self.lowest, self.highest = self.statement.lower - self.slack, self.statement.upper + self.slack
         self.look()
 
@@ -218,7 +236,7 @@ class SearchState:
             self._take_in()
         product = statement.bent(x)
         self.gradient = product + statement.c
-        self._terms = max(sqrt(float(product.dot(product)) * self._part), self._least)
+        self._terms = max(sqrt(dot(product, product) * self._part), self._least)
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
 
     def write(

@@ -49,21 +49,23 @@ def _first(progress: SearchState, along: Array, speed: Array, away: BoolArray) -
     # the bound ahead has the quotient that is not negative
     steps = np.maximum((statement.upper - values) / along, (statement.lower - values) / along)
     steps[away] = INFINITY
-    late = steps + progress.slack / speed
-    furthest = late.item(late.argmin())
-    if not furthest < INFINITY:  # nor is there one where the values have overflowed
+    constraint = int(steps.argmin())
+    least = steps.item(constraint)
+    if not least < INFINITY:  # nor is there one where the values have overflowed
         return None
-    if progress.stalled <= STALLED:
-        met = (steps <= furthest).nonzero()[0]
-        constraint = met.item(speed[met].argmax())
-    else:
-        least = steps.item(steps.argmin())
+    if progress.stalled > STALLED:
         constraint = int((steps <= least + 1e-13 * max(1.0, least)).argmax())
+    else:
+        late = least + progress.slack.item(constraint) / speed.item(constraint)
+        met = (steps <= late).nonzero()[0]
+        if met.size > 1:
+            met = met[steps[met] <= (steps[met] + progress.slack[met] / speed[met]).min()]
+            constraint = met.item(speed[met].argmax())
     return BlockingConstraint(constraint, side_reached(progress, constraint, along), max(steps.item(constraint), 0.0))
 
 
 def side_reached(progress: SearchState, constraint: int, along: Array) -> int:
     """Bound that the movement reaches: -1, +1, or 2 for an equality."""
-    if progress.statement.equality[constraint]:
+    if progress.statement.equality.item(constraint):
         return 2
     return -1 if along.item(constraint) < 0.0 else 1

@@ -3,14 +3,16 @@
 Rows of fixed variables are zero. In large programs they are not stored.
 """
 
+from math import sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.factorizations import add_rank_one
+from bemcontact.formulations.local_solver.factorizations import add_rank_one, dot
 from bemcontact.formulations.local_solver.statement import INFINITY, largest
 
-SMALL = 30
+SMALL = 100
 """Number of variables up to which the largest entry is looked for at once."""
 LARGE = 250
 """Number of variables from which rows of fixed variables are not stored."""
@@ -74,8 +76,8 @@ class RightInverse:
     def _subtract(self, column: Array, row: Array) -> None:
         """Subtract column rowᵀ."""
         add_rank_one(self._columns, -1.0, column, row)
-        if self._n > SMALL:
-            self._bound += largest(column) * largest(row)
+        if self._n > SMALL:  # lengths bound the largest entries
+            self._bound += sqrt(dot(column, column) * dot(row, row)) if row.size else 0.0
 
     @property
     def whole(self) -> Array:
@@ -139,7 +141,7 @@ class RightInverse:
         if self._released is None:
             return None
         direction = self._released
-        return float(direction.dot(normal)) if variable is None else direction.item(variable), direction
+        return dot(direction, normal) if variable is None else direction.item(variable), direction
 
     def exchange(self, normal: Array, variable: int | None, inverse: Array) -> None:
         """Hold a normal where only the direction released last is free: one change of N instead of two."""

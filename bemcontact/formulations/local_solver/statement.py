@@ -18,6 +18,8 @@ INFINITE = 1e20
 """A bound of this size or more counts as infinite, as in most solvers."""
 WORTH_SPARSE, SPARSE = 150, 0.1
 """Least number of variables, and largest part of entries that are not zero, of a matrix whose zeros are left out."""
+FEW_ENTRIES = 10000
+"""Largest number of entries of a matrix of which a product with all rows takes no longer than one with some."""
 INFINITY = float("inf")
 EPS = float(np.finfo(float).eps)
 
@@ -116,11 +118,12 @@ class Statement:
 
     def transposed(self, y: Array) -> Array:
         """[I; A]ᵀ y."""
-        n = self.c.size
-        of_rows = y[n:].nonzero()[0]
-        if 4 * of_rows.size >= self.A.shape[0]:
-            return y[:n] + y[n:].dot(self.A)
-        return y[:n] + y[n + of_rows].dot(self.A[of_rows])
+        n, of_rows = self.c.size, y[self.c.size :]
+        if self.A.size > FEW_ENTRIES:
+            used = of_rows.nonzero()[0]
+            if 4 * used.size < of_rows.size:
+                return y[:n] + of_rows[used].dot(self.A[used])
+        return y[:n] + of_rows.dot(self.A)
 
     def normal(self, constraint: int) -> Array:
         """Gradient of one constraint."""
@@ -188,7 +191,8 @@ def read_statement(
         raise ProblemError("cl or cu is given without A: give the rows A that they bound, or use bl and bu")
     lower = np.concatenate([_bound("bl", bl, n, -np.inf), _bound("cl", cl, m, -np.inf)])
     upper = np.concatenate([_bound("bu", bu, n, np.inf), _bound("cu", cu, m, np.inf)])
-    if np.count_nonzero((lower < np.inf) & (upper > -np.inf) & (lower <= upper)) < lower.size:
+    crossed = np.count_nonzero(lower <= upper) < lower.size  # or not a number
+    if crossed or lower.item(lower.argmax()) == INFINITY or upper.item(upper.argmin()) == -INFINITY:
         _complain(lower, upper, n)
     lower[lower <= -INFINITE], upper[upper >= INFINITE] = -np.inf, np.inf
     return Statement(H=hessian, c=linear, A=rows, lower=lower, upper=upper)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from bemcontact.arrays import Array, BoolArray, fine_remainders
 from bemcontact.formulations.local_solver.factorizations import (
+    dot,
     independent_rows,
     orthogonal,
     over_triangle,
@@ -160,11 +161,12 @@ class WorkingSet:
         return self.multipliers(gradient)[: gradient.size] * self.free
 
     def of_all(self, multipliers: Array) -> Array:
-        """Multipliers of all constraints (..., n + m) from those of the working set (..., n + r)."""
-        n, real = self.free.size, self.ids >= 0
-        of_all = np.zeros((*multipliers.shape[:-1], self.held.size))
-        of_all[..., :n] = multipliers[..., :n] * self.held[:n]
-        of_all[..., self.ids[real]] = multipliers[..., n:][..., real]
+        """Multipliers of all constraints (n + m,) from those of the working set (n + r,)."""
+        n, of_rows = self.free.size, multipliers[self.free.size :]
+        of_all = np.zeros(self.held.size)
+        of_all[:n] = multipliers[:n] * self.held[:n]
+        real = self.ids >= 0 if self.temporary else slice(None)
+        of_all[self.ids[real]] = of_rows[real]
         return of_all
 
     def _refine(self, of_rows: Array, gradient: Array, rest: Array) -> Array:
@@ -173,7 +175,7 @@ class WorkingSet:
         The `rest` of the gradient without its part along the rows is changed too.
         """
         correction = self.inverse.against(rest)
-        if correction.dot(correction) > WEAR**2 * of_rows.dot(of_rows):
+        if dot(correction, correction) > WEAR**2 * dot(of_rows, of_rows):
             self._renew()
             of_rows = self.inverse.against(gradient)
             np.subtract(gradient, of_rows.dot(self.W), rest)
@@ -213,7 +215,7 @@ class WorkingSet:
         outside = normal
         for _ in range(2):
             outside = (outside - self.inverse.against(outside).dot(self.W)) * self.free
-        return self._is_rounding(float(outside.dot(outside)))
+        return self._is_rounding(dot(outside, outside))
 
     def _is_rounding(self, outside: float) -> bool:
         """Whether the squared length of a normal outside the span is none."""
@@ -243,11 +245,11 @@ class WorkingSet:
             return inverse
         along = self.inverse.against(normal) if variable is None else self.inverse.row(variable)
         outside = (normal - along.dot(self.W)) * self.free
-        again, size = self.inverse.against(outside), float(outside.dot(normal))
-        if again.dot(again) > SHARP**2 * size:
+        again, size = self.inverse.against(outside), dot(outside, normal)
+        if self.size and dot(again, again) > SHARP**2 * size:
             self.sharp = False
             outside -= again.dot(self.W) * self.free
-            size = float(outside.dot(normal))
+            size = dot(outside, normal)
         if self._is_rounding(size):
             return None
         inverse = outside / size
@@ -278,7 +280,7 @@ class WorkingSet:
             self.sides[constraint], self.held[constraint] = 0, False
         self.number -= 1
         if self.size or place >= n:
-            direction /= sqrt(direction.dot(direction))
+            direction /= sqrt(dot(direction, direction))
         if self.size:
             self.inverse.released(direction)
         return constraint, direction
@@ -288,7 +290,7 @@ class WorkingSet:
         if self.size == 0:
             return direction
         rest = self.W.dot(direction)
-        lost, length = float(rest.dot(rest)), float(direction.dot(direction))
+        lost, length = dot(rest, rest), dot(direction, direction)
         if lost <= EXACT**2 * length:
             return direction
         self.sharp = self.sharp and lost <= BLUNT**2 * length
@@ -312,8 +314,8 @@ class WorkingSet:
 
     def onto(self, x: Array) -> Array:
         """The nearest point on the bounds of the working set."""
-        n, lower, upper = self.free.size, self.statement.lower, self.statement.upper
-        targets = np.where(self.sides == 1, upper, lower)
+        n = self.free.size
+        targets = np.where(self.sides == 1, self.statement.upper, self.statement.lower)
         x = np.where(self.held[:n], targets[:n], x)
         if self.size == 0:
             return x
@@ -337,7 +339,7 @@ def supporting(progress: SearchState, sides: Sides) -> Sides:
     """
     statement, n = progress.statement, progress.x.size
     free, rows = (sides[:n] == 0).nonzero()[0], sides[n:].nonzero()[0]
-    if rows.size == 0 or (statement.violation(progress.values) > progress.slack).any():
+    if rows.size == 0 or (progress.violation > progress.slack).any():
         return sides
     if orthogonal(unit_rows(statement.A[rows][:, free])[0], DEPENDENT, complete=False)[3].size == rows.size:
         return sides

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from bemcontact.arrays import exact_remainders, fine_remainders
 from bemcontact.formulations.local_solver.factorizations import orthogonal
 from bemcontact.formulations.local_solver.phase_two import ReducedHessian
-from bemcontact.formulations.local_solver.right_inverse import LARGE, ROOM
+from bemcontact.formulations.local_solver.right_inverse import LARGE, ROOM, SMALL
 from bemcontact.formulations.local_solver.statement import EPS, Statement
 from bemcontact.formulations.local_solver.working_set import TEMPORARY, WorkingSet
 
@@ -267,3 +267,38 @@ def test_remainders_are_those_of_fractions(seed):
     ]
     half_a_digit = EPS / 2 * np.abs(np.array(exact, float))
     assert (np.array(off, float) <= half_a_digit * (1 + 1e-9) + 100 * EPS**2 * terms).all()
+
+
+@pytest.mark.parametrize("n", [5, 150])
+def test_products_with_all_constraints_are_those_of_the_matrix(n):
+    """[I; A]ᵀ y of sparse and full y, in programs small and large."""
+    rng = np.random.default_rng(n)
+    data = statement(n, n, n, definite=True)
+    for part in (0.05, 1.0):
+        y = rng.standard_normal(2 * n) * (rng.random(2 * n) < part)
+        assert_allclose(data.transposed(y), np.vstack([np.eye(n), data.A]).T @ y, atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["variables", "directions"])
+def test_the_reduced_hessian_is_definite_on_any_basis(kind):
+    """ZᵀHZ = I, and Z spans the basis: unit vectors of some variables in any order and sign, or any directions."""
+    rng = np.random.default_rng(3)
+    data = statement(3, definite=True)
+    basis = np.eye(12)[:, rng.permutation(12)[:7]]
+    bases = [basis, -basis] if kind == "variables" else [np.linalg.qr(rng.standard_normal((12, 7)))[0]]
+    for basis in bases:
+        hessian = ReducedHessian(data, basis)
+        assert_allclose(hessian.Z.T @ data.H @ hessian.Z, np.eye(7), atol=1e-12)
+        assert_allclose(basis @ (basis.T @ hessian.Z), hessian.Z, atol=1e-12)
+
+
+def test_the_bound_of_the_right_inverse_is_above_its_entries():
+    """In programs of many variables the largest entry is looked for only where a bound does not decide."""
+    data = statement(5, SMALL + 20, 60, definite=False)
+    working, hessian = start(data, [0] * (SMALL + 80))
+    rng = np.random.default_rng(5)
+    for _ in range(60):
+        change_at_random(data, working, hessian, rng)
+        largest = np.abs(working.N).max(initial=0.0)
+        assert not working.inverse.is_below(largest)
+        assert working.inverse.is_below(1.001 * largest + 1e-300)
