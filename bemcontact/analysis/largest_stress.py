@@ -211,6 +211,8 @@ class _Search:
             shallow = depth <= SHALLOW * self.body.field.mesh.lengths[every[element]]
             if not ends.inside[i] or shallow or self._distance(point, self.below)[0] > BESIDE * depth:
                 continue
+            if self._beside_infinite(point):  # the mesh makes maxima there
+                continue
             if (self._values(point + depth * RINGS) < (1 - LEVEL) * value).all():
                 x, y = point.tolist()
                 return StressPeak(value=value, point=(x, y), depth=self._distance(point, surface)[0])
@@ -220,11 +222,14 @@ class _Search:
         """Why no search has ended at a maximum, from where the highest has."""
         if ends is None:
             return NoPeak.TO_BOUNDARY
-        highest, mesh = ends.points[np.argmax(ends.values)], self.body.field.mesh
-        singular = np.flatnonzero(self.body.singular)
+        beside = self._beside_infinite(ends.points[np.argmax(ends.values)])
+        return NoPeak.TO_INFINITE if beside else NoPeak.TO_BOUNDARY
+
+    def _beside_infinite(self, point: Array) -> bool:
+        """Whether a point is nearer to an infinite stress than the elements there are long."""
+        mesh, singular = self.body.field.mesh, np.flatnonzero(self.body.singular)
         beside = np.maximum(mesh.lengths[singular], mesh.lengths[mesh.before[singular]])
-        near = np.hypot(*(mesh.nodes[singular] - highest).T) <= beside
-        return NoPeak.TO_INFINITE if near.any() else NoPeak.TO_BOUNDARY
+        return bool((np.hypot(*(mesh.nodes[singular] - point).T) <= beside).any())
 
     def _starts(self) -> tuple[Array, Array, Array, Array]:
         """Points (k, 2) that are larger than their neighbors, the largest first, their depths and values (k,).

@@ -45,7 +45,7 @@ def check(source: Source, figure: FigureOption = None, refine: RefineOption = 1)
 
 
 def draw_refused(source: Source, figure: Path) -> None:
-    """Draw what can be read of a problem that is refused, and say where; only of one body with a sound boundary."""
+    """Draw what can be read of a problem that is refused, and say where; the bodies with a sound boundary."""
     from bemcontact.analysis.check import drawable
     from bemcontact.report import figures
 
@@ -54,7 +54,7 @@ def draw_refused(source: Source, figure: Path) -> None:
         figures.save(figures.figure_of_problem(*drawable(problem), note), figure)
         tell("note: ", f"{figure} shows the parts of the problem that could be read", "bold")
     else:
-        why = "a refused problem is drawn if it has one body with a sound outline"
+        why = "a refused problem is drawn if the outline of an elastic body is sound"
         tell("note: ", f"{figure} is not written: {why}", "bold")
 
 

@@ -77,6 +77,14 @@ class ContactBlock:
             )
         return lu
 
+    @property
+    def regular(self) -> bool:
+        """Whether the points determine their pressures and the position of the body."""
+        try:
+            return not self._lu.singular
+        except SingularSystemError:
+            return False
+
     def inverse(self, right: Array) -> Array:
         """Solve for right sides (|A| + k,) or (|A| + k, m), with one step of iterative refinement."""
         if not right.size:
@@ -99,10 +107,11 @@ class ContactBlock:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ActiveSetEnd:
-    """The best point of the iteration: p >= 0 (n,), a (k,), and the relative residual after each step."""
+    """The best point: p >= 0 (n,), a (k,), its set (n,), and the relative residual after each step."""
 
     pressure: Array
     amplitudes: Array
+    active: BoolArray
     residuals: tuple[float, ...]
 
     @property
@@ -147,20 +156,20 @@ def primal_dual(scaled: ScaledContact, active: BoolArray, limit: int | None = No
     Each step solves `solve_active_set`, then releases the points in tension and adds the points that penetrate. Only
     the residual of the best point says whether it is a solution.
     """
-    points: list[tuple[Array, Array]] = []
+    points: list[tuple[Array, Array, BoolArray]] = []
     residuals: list[float] = []
     visited: set[bytes] = set()
     limit = STEP_LIMIT + len(active) if limit is None else limit
     while len(points) < limit and active.tobytes() not in visited:
         visited.add(active.tobytes())
         p, a = solve_active_set(scaled, active)
-        points.append((np.maximum(p, 0.0), a))
-        residuals.append(scaled.residual(*points[-1]))
+        points.append((np.maximum(p, 0.0), a, active))
+        residuals.append(scaled.residual(*points[-1][:2]))
         if residuals[-1] <= SETTLED:
             break
         active = np.where(active, p > 0, scaled.gap(p, a) < 0)
-    pressure, amplitudes = points[residuals.index(min(residuals))]
-    return ActiveSetEnd(pressure=pressure, amplitudes=amplitudes, residuals=tuple(residuals))
+    pressure, amplitudes, best = points[residuals.index(min(residuals))]
+    return ActiveSetEnd(pressure=pressure, amplitudes=amplitudes, active=best, residuals=tuple(residuals))
 
 
 def solve_active_set(scaled: ScaledContact, active: BoolArray) -> tuple[Array, Array]:

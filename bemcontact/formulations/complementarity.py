@@ -1,7 +1,8 @@
 """The direct solver: gap = q + M p + R a >= 0, p >= 0, p·gap = 0, ℓᵀp = -load, and the polish of other solvers.
 
-The primal-dual active set comes first, from two starts. Where both cycle, Lemke's method follows. Quadratic programs
-are compared with the direct solution.
+The primal-dual active set comes first, from two starts. Where one cycles, a few pivots of Lemke's method from its best
+set follow, and where all of them fail, this method from its own start. Quadratic programs are compared with the direct
+solution.
 """
 
 from dataclasses import dataclass, replace
@@ -12,7 +13,13 @@ from scipy.linalg import qr
 from bemcontact.arrays import Array, BoolArray, IntArray, nonnegative_residual
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
-from bemcontact.formulations.active_set import ActiveSetEnd, first_active_set, primal_dual, resting_points
+from bemcontact.formulations.active_set import (
+    ActiveSetEnd,
+    ContactBlock,
+    first_active_set,
+    primal_dual,
+    resting_points,
+)
 from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.open_position import with_chosen_position
 from bemcontact.formulations.scaling import ACCEPTED, ScaledContact, scale, scaled_point, unscaled
@@ -21,6 +28,9 @@ from bemcontact.options import FormulationName, SolveOptions, options_of
 BALANCED = 1e-12
 """Fraction of the load, by its norm, that may remain without support before the load counts as impossible to carry."""
 POLISH_STEPS = 10
+NEAR_PIVOTS = 100
+"""Pivots of Lemke's method from the best set of a cycle. They suffice for a few wrong points, and take about as long as
+the cycle."""
 NAMED = 1e-9
 """Least share of a motion that a sentence names."""
 
@@ -113,26 +123,27 @@ def escape_words(contact: CondensedContact, motion: Array) -> str:
     return f"the load pulls the body off its support, in a motion that nothing holds: {terms}"
 
 
-def standard_form(scaled: ScaledContact) -> tuple[Array, Array, BoolArray]:
+def standard_form(scaled: ScaledContact, near: BoolArray | None = None) -> tuple[Array, Array, BoolArray]:
     """The contact problem as w = q' + M' z without free motions, by one principal pivot.
 
     Choose k points B on which R_B has full rank (QR with pivoting). The block of [[M, R], [ℓᵀ, 0]] on B and the motions
     then is nonsingular whatever M is, so that p_B and a can be expressed by δ_B and p elsewhere. On B pressure and gap
     change places. Rows are weighted by J: Δzᵀ Δw = Δpᵀ JM Δp on the equilibrium space, so that M' inherits
-    semidefiniteness from sym(JM) there. The result is M' (n, n), q' (n,) and the mask of B (n,).
+    semidefiniteness from sym(JM) there. The result is M' (n, n), q' (n,) and the mask of B (n,). B may be given as a
+    set (n,) `near` to the solution whose block is not singular: then z = 0 is near to it, and few q' are negative.
     """
     M, R, ell, J = scaled.compliance, scaled.rigid_motions, scaled.equilibrium, scaled.weights
     n, k = R.shape
-    B = _spanning_points(np.sqrt(J)[:, None] * R)
-    rest = np.setdiff1d(np.arange(n), B)
+    B = _spanning_points(np.sqrt(J)[:, None] * R) if near is None else np.flatnonzero(near)
+    b, rest = len(B), np.setdiff1d(np.arange(n), B)
     inside, order = np.append(B, n + np.arange(k)), np.append(B, rest)
     W = np.block([[M, R], [ell.T, np.zeros((k, k))]])
     h = np.append(scaled.offset, scaled.motion_load)
-    given = np.hstack([np.eye(2 * k, k), -W[np.ix_(inside, rest)], -h[inside, None]])
+    given = np.hstack([np.eye(b + k, b), -W[np.ix_(inside, rest)], -h[inside, None]])
     inner = np.linalg.solve(W[np.ix_(inside, inside)], given)
-    gap_rest = W[np.ix_(rest, inside)] @ inner + np.hstack([np.zeros((n - k, k)), M[np.ix_(rest, rest)], h[rest, None]])
+    gap_rest = W[np.ix_(rest, inside)] @ inner + np.hstack([np.zeros((n - b, b)), M[np.ix_(rest, rest)], h[rest, None]])
     rows = np.empty((n, n + 1))
-    rows[order] = np.vstack([inner[:k], gap_rest])
+    rows[order] = np.vstack([inner[:b], gap_rest])
     matrix = np.empty((n, n))
     matrix[:, order] = rows[:, :n]
     return J[:, None] * matrix, J * rows[:, n], np.isin(np.arange(n), B)
@@ -160,28 +171,46 @@ class FoundState:
 
 
 def find_state(scaled: ScaledContact, pivot_limit: int | None, near: BoolArray | None = None) -> FoundState:
-    """Primal-dual active set from two starts; if it cycles, Lemke's method, and the active set again from its end.
+    """Primal-dual active set from two starts; Lemke's method from the best set of a cycle, or from its own start.
 
-    A set (n,) that is `near` is the first start.
+    A set (n,) that is `near` is the first start. After Lemke's method comes the active set again from its end.
     """
-    ends = list[ActiveSetEnd]()
+    ends, traces = list[ActiveSetEnd](), list[tuple[str, tuple[float, ...]]]()
+
+    def found(method: str, active: BoolArray) -> FoundState | None:
+        """The state at the end of the active set from a start, if it is one."""
+        ends.append(primal_dual(scaled, active))
+        traces.append(("residual", ends[-1].residuals))
+        if ends[-1].residual > ACCEPTED:
+            return None
+        return FoundState(end=ends[-1], status=Status.SOLVED, method=method, history=traces_in_turn(*traces))
+
+    def after_pivots(limit: int | None, near: BoolArray | None = None) -> tuple[FoundState | None, Status]:
+        """The state at the end of Lemke's method, if it is one, and how this ended."""
+        matrix, vector, exchanged = standard_form(scaled, near)
+        path = lemke(matrix, vector, limit=limit)
+        traces.append(("infeasibility", path.covers))
+        return found(LEMKE, path.active ^ exchanged), path.status
+
     starts = (first_active_set, resting_points) if scaled.motion_load.size else (first_active_set,)
     for start in starts if near is None else (lambda _: near, *starts):
-        ends.append(primal_dual(scaled, start(scaled)))
-        if ends[-1].residual <= ACCEPTED:
-            history = traces_in_turn(*(("residual", end.residuals) for end in ends))
-            return FoundState(end=ends[-1], status=Status.SOLVED, method=ACTIVE_SET, history=history)
-    matrix, vector, exchanged = standard_form(scaled)
-    path = lemke(matrix, vector, limit=pivot_limit)
-    last = primal_dual(scaled, path.active ^ exchanged)
-    history = traces_in_turn(
-        *(("residual", end.residuals) for end in ends), ("infeasibility", path.covers), ("residual", last.residuals)
+        if state := found(ACTIVE_SET, start(scaled)):
+            return state
+        best = ends[-1].active
+        if best.any() and ContactBlock(scaled=scaled, points=np.flatnonzero(best)).regular:
+            state, _ = after_pivots(NEAR_PIVOTS if pivot_limit is None else min(pivot_limit, NEAR_PIVOTS), best)
+            if state:
+                return state
+    state, status = after_pivots(pivot_limit)
+    if state:
+        return state
+    best_end = min(ends, key=lambda end: end.residual)
+    return FoundState(
+        end=best_end,
+        status=Status.NUMERICAL_FAILURE if status is Status.SOLVED else status,
+        method=LEMKE,
+        history=traces_in_turn(*traces),
     )
-    if last.residual <= ACCEPTED:
-        return FoundState(end=last, status=Status.SOLVED, method=LEMKE, history=history)
-    status = Status.NUMERICAL_FAILURE if path.status is Status.SOLVED else path.status
-    best = min(*ends, last, key=lambda end: end.residual)
-    return FoundState(end=best, status=status, method=LEMKE, history=history)
 
 
 def _without_contact(contact: CondensedContact, note: str) -> ContactSolution:

@@ -109,6 +109,36 @@ def test_singular_bodies():
     assert sorted(beam.singular.tolist()) == [[0, 0], [0, 5]]
 
 
+@pytest.mark.slow
+def test_beside_a_sharp_stop():
+    """At the edge of a rigid stop stress grows like s^-1/2: a maximum within the element there is one of the mesh."""
+    corners = {"under": [0, 2], "right": [60, 2], "top": [60, 14], "left": [0, 14]}
+    stop = {"below": [50, 0], "right": [60, 0], "over": [60, 2], "left": [50, 2]}
+    load = {"force": {"y": -2000, "width": 10, "at": 20}}
+    problem = bemcontact.problem(
+        {
+            "name": "beam",
+            "bodies": {
+                "beam": {
+                    "material": {"young_modulus": 210e3, "poisson_ratio": 0.3},
+                    "boundary": {"outer": [{"name": name, "start": at} for name, at in corners.items()]},
+                    "conditions": {"left": {"fixed": True}, "top": load},
+                },
+                "stop": {
+                    "rigid": True,
+                    "boundary": {"outer": [{"name": name, "start": at} for name, at in stop.items()]},
+                },
+            },
+            "contacts": {"stop": {"between": ["stop/over", "beam/under"]}},
+        }
+    )
+    largest = bemcontact.solve(problem).largest_stresses()
+    assert largest.shear == {"stop": None}
+    assert largest.missing["shear below stop"] is NoPeak.TO_INFINITE
+    assert [50, 2] in largest.singular.round(6).tolist()
+    assert largest.inside is None or np.hypot(*np.subtract(largest.inside.point, [50, 2])) > 1
+
+
 def test_no_contact():
     """A body that is held without contact has no stress below it; its largest one is on the boundary."""
     far = {"kind": "plane", "point": [0, 9], "normal": [0, -1]}

@@ -8,6 +8,7 @@ import pytest
 from command_line import BLOCK, PRESS, assert_refused, in_one_process, run
 
 import bemcontact
+from bemcontact import spec
 from bemcontact.analysis import solve as analysis
 from bemcontact.contact.condensed_contact import CondensedContact
 
@@ -150,3 +151,57 @@ def test_check_draws_nothing_without_a_sound_boundary(block: Path, tmp_path: Pat
         assert answer.exit_code == 2
         assert "picture.svg is not written" in " ".join(answer.stderr.split())
         assert not (tmp_path / "picture.svg").exists()
+
+
+STACK = """
+name: stack
+units: {length: mm, force: N}
+materials: {steel: {young_modulus: 210 GPa, poisson_ratio: 0.3}}
+bodies:
+  lower:
+    material: steel
+    boundary:
+      outer: [{name: bottom, start: [0, 0]}, {name: right, start: [4 cm, 0]}, {name: top, start: [40, 20]}, {name: left, start: [0, 20]}]
+    conditions: {bottom: {fixed: true}}
+  upper: {copy_of: lower, shift: [0, 20], conditions: {top: {pressure: 3}, left: {displacement: {x: 0}}}}
+  stop:
+    rigid: true
+    boundary: {outer: [{name: rim, kind: arc, center: [50, 10], radius: 10, angles: [-90, 270]}]}
+contacts:
+  joint: {between: [upper/bottom, lower/top]}
+  beside: {between: [lower/right, stop]}
+"""  # noqa: E501
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("old", "new", "drawn", "missing"),
+    [
+        ("poisson_ratio", "poissonratio", ["joint", "stop"], []),
+        ("material: steel", "material: stel", ["joint", "stop"], []),
+        ("upper/bottom", "upper/botom", ["stop"], ["joint"]),
+        ("lower/top", "lower/right", ["stop"], ["joint"]),
+        ("lower, shift", "lowr, shift", ["lower", "stop"], ["joint", "upper"]),
+        ("bottom: {fixed: true}", "botom: {fixed: true}", ["joint", "stop"], ["u_x"]),
+        ("{pressure: 3}", "{pressure: -3}", ["joint", "stop"], []),
+        ("center: [50, 10]", "center: [50]", ["joint"], ["beside"]),
+        ("  beside: {between: [lower/right, stop]}\n", "", ["joint"], ["beside"]),
+        ("  beside", "  joint 2: {between: [lower/top, upper/bottom]}\n  beside", ["joint"], []),
+    ],
+)
+def test_check_draws_what_can_be_read_of_several_bodies(
+    tmp_path: Path, old: str, new: str, drawn: list[str], missing: list[str]
+):
+    """Bodies with a sound outline, and contacts whose sides are there and opposite to each other."""
+    path, picture = tmp_path / "stack.yaml", tmp_path / "picture.svg"
+    path.write_text(STACK.replace(old, new, 1), encoding="utf-8")
+    answer = run("check", path, "--figure", picture)
+    assert answer.exit_code == 2
+    assert "shows the parts of the problem that could be read" in answer.stderr
+    problem = spec.readable(path.read_text(encoding="utf-8"), "stack.yaml")
+    assert problem is not None
+    names = [*problem.bodies, *problem.contacts, *(["u_x"] if "lower/bottom" in problem.edge_conditions else [])]
+    assert {*drawn} <= {*names}
+    assert not {*missing} & {*names}
+    assert "<svg" in picture.read_text(encoding="utf-8")
+    assert ("rigid surface" in picture.read_text(encoding="utf-8")) == ("stop" in problem.bodies)

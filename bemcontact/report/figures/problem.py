@@ -29,6 +29,7 @@ from bemcontact.problems import (
     Problem,
     Spline,
 )
+from bemcontact.problems.bodies import named_loops
 from bemcontact.problems.conditions import Along, Springs
 from bemcontact.report.figures.page import (
     BLACK,
@@ -368,6 +369,10 @@ def _draw_surfaces(axes: Axes, problem: Problem, mesh: Mesh) -> Iterator[Ground 
         gap, normal = zone.surface.closest(facing)
         at = _nearest(gap, size)
         yield draw_arrows(axes, (facing[at] - gap[at] * normal[at])[None], 0.09 * size * normal[at][None], GREY)
+    for body in problem.bodies:
+        if body not in drawn and not problem.is_elastic(body):  # a refused problem may have such
+            for points, normals in outlines(named_loops(problem.boundary_of(body), body)):
+                yield draw_ground(axes, points, normals, 0.03 * size, GREY)
     yield from _draw_contours(axes, problem, mesh)
 
 
@@ -397,12 +402,16 @@ def _nearest(gap: Array, size: float) -> int:
 
 def surface_lines(problem: Problem, zone: str, overhang: float) -> list[tuple[Array, Array]]:
     """The line of a rigid surface as of `surface_line`, or each loop of a rigid body."""
-    surface, shares = problem.zones[zone].surface, np.linspace(0, 1, 91)
-    if not isinstance(surface, BodySurface):
-        return [surface_line(problem, zone, overhang)]
+    surface = problem.zones[zone].surface
+    return outlines(surface.loops) if isinstance(surface, BodySurface) else [surface_line(problem, zone, overhang)]
+
+
+def outlines(loops: Sequence[Sequence[Edge]]) -> list[tuple[Array, Array]]:
+    """Points (k, 2) of each loop of a body, in order, and unit normals (k, 2)."""
+    shares = np.linspace(0, 1, 91)
     return [
         (np.concatenate([it.points(shares) for it in loop]), np.concatenate([it.normals(shares) for it in loop]))
-        for loop in surface.loops
+        for loop in loops
     ]
 
 
