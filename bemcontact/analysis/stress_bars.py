@@ -95,8 +95,22 @@ class _Pair:
         around = self._change_inside(peak, measure) if peak.edge is None else self._change_along(peak, peak.edge)
         if around is None:
             return None
-        bar = max(self.factor * max(abs(peak.value - other.value), around) / peak.value, self.floor)
+        # A smaller one elsewhere says nothing of this one, which that mesh does not tell from an infinite one.
+        away = np.hypot(*np.subtract(peak.point, other.point))
+        elsewhere = (other.body, other.edge) != (peak.body, peak.edge) or away > self._reach(peak)
+        change = max(other.value - peak.value, around) if elsewhere else max(abs(peak.value - other.value), around)
+        bar = max(self.factor * change / peak.value, self.floor)
         return bar if bar < TELLS_NOTHING else None
+
+    def _reach(self, peak: StressPeak) -> float:
+        """Distance [L] up to which a maximum of the other mesh is that of this one: depth, or longer element there."""
+        if peak.edge is None:
+            return peak.depth
+        lengths = []
+        for mesh in (self.one.field.mesh, self.two.field.mesh):
+            nearest = magnitudes(mesh.nodes[: len(mesh.elements)] - peak.point).argmin()
+            lengths.append(float(mesh.lengths[nearest]))
+        return max(lengths)
 
     def _change_inside(self, peak: StressPeak, measure: Measure) -> float | None:
         """Largest change [p] of a stress at places around a maximum inside."""

@@ -156,7 +156,9 @@ class StressOfBodies:
             shear=shear,
             inside=inside,
             boundary=boundary,
-            singular=np.concatenate([item.singular for item in each]),
+            singular=_distinct(
+                np.concatenate([item.singular for item in each]), SAME_PLACE * self.bodies[0].field.mesh.size
+            ),
             missing={label: why for item in each for label, why in item.missing.items() if found[label] is None},
         )
 
@@ -207,6 +209,12 @@ def _on_both_sides(
 def _largest(peaks: Sequence[StressPeak | None]) -> StressPeak | None:
     """The largest of some stresses; None if there is none."""
     return max((peak for peak in peaks if peak is not None), key=lambda peak: peak.value, default=None)
+
+
+def _distinct(places: Array, same: float) -> Array:
+    """Places (k, 2) [L] without those that are the same as one before: of bodies that touch there."""
+    away = np.hypot(*np.moveaxis(places[:, None] - places, 2, 0))
+    return places[~np.tril(away <= same, -1).any(axis=1)]
 
 
 def _with_name(body: str, largest: LargestStresses) -> LargestStresses:

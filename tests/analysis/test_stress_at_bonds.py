@@ -76,6 +76,25 @@ def test_a_corner_on_an_elastic_block_makes_stress_infinite_in_both():
         "b": elastic(block((0, 1), (2, 3)), {**SIDE, "top": {"pressure": 1}}),
     }
     problem = stated(name="seat", bodies=bodies, contacts={"c": {"between": ["b/bottom", "a/top"]}})
-    places = bemcontact.solve(problem, accuracy=0.1).largest_stresses().singular
-    assert np.allclose(places, (1, 2))
-    assert len(places) == 2
+    result = bemcontact.solve(problem, accuracy=0.1)
+    np.testing.assert_allclose(result.largest_stresses().singular, [(1, 2)])
+    for edge in ("a/top", "b/bottom"):
+        assert {tuple(place) for place in result.boundary_stress()[edge].singular.round(9).tolist()} == {(1.0, 2.0)}
+
+
+@pytest.mark.slow
+def test_bars_away_from_an_infinite_stress_are_those_of_the_place():
+    """The largest stress on the bond is below the middle of the contact; the coarser mesh does not trust it there."""
+    outlines = [block((0, 4), (y, y + 1)) for y in (0, 1)]
+    bodies = {
+        "a": elastic(outlines[0], {"bottom": {"displacement": {"y": 0}}}, 200),
+        "b": elastic(outlines[1], {}, 20),
+    }
+    surface = {"kind": "circle", "center": [2, 12], "radius": 10, "body": "outside"}
+    spec = {"contact_zones": {"press": {"edges": ["b/top"], "surface": surface}}}
+    tools = {"roll": {"zones": ["press"], "force": {"y": -1}}}
+    problem = stated(name="layers", bodies=bodies, bonded={"glue": ["a/top", "b/bottom"]}, tools=tools, **spec)
+    peaks = [bemcontact.solve(problem, accuracy=accuracy).largest_stresses().boundary for accuracy in (0.01, 0.001)]
+    assert all(peak.point == pytest.approx((2, 1), abs=0.02) for peak in peaks)
+    assert peaks[0].bar < 0.05
+    assert peaks[0].value == pytest.approx(peaks[1].value, rel=peaks[0].bar + peaks[1].bar)
