@@ -4,10 +4,11 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from scipy.linalg import eigvalsh, solve_triangular
+from scipy.linalg import eigvalsh, get_lapack_funcs, solve_triangular
 
 from bemcontact.arrays import Array
 
+geqrf, ormqr = get_lapack_funcs(("geqrf", "ormqr"), dtype=float)
 EPS = float(np.finfo(float).eps)
 LEAST_COMPLIANCE = 1e-10
 """Fraction of ‖M‖∞ below which the compliance of a point may be what round-off leaves of zero."""
@@ -48,10 +49,12 @@ class Definiteness:
             return cls(scales=S, reach=np.zeros(n), eigenvalue=None, certain=np.inf, form=none[:0], space=none)
         A, spread, reach = S[:, None] * (D[:, None] * M) * S, 1.0, np.ones(n)
         K, terms, Z = (A + A.T) / 2, (np.abs(A) + np.abs(A).T) / 2, np.eye(n)
-        if ell.shape[1]:
+        if k := ell.shape[1]:
             ell = ell / np.linalg.norm(ell, axis=0)
-            Z, spread = np.linalg.qr(ell, mode="complete")[0][:, ell.shape[1] :], float(np.linalg.cond(ell))
-            K, reach = Z.T @ K @ Z, np.minimum(np.linalg.norm(Z, axis=1) + n * EPS * spread, 1.0)
+            spread, (reflectors, factors, *_) = float(np.linalg.cond(ell)), geqrf(ell)
+            Z, half = (_times_q(part, reflectors, factors)[:, k:] for part in (np.eye(n), K))
+            K = _times_q(half.T, reflectors, factors)[:, k:]
+            reach = np.minimum(np.linalg.norm(Z, axis=1) + n * EPS * spread, 1.0)
         smallest = float(eigvalsh(K, subset_by_index=(0, 0))[0])
         round_off = n * EPS * spread * float(terms.sum(axis=1).max())
         return cls(scales=S, reach=reach, eigenvalue=smallest, certain=smallest - round_off, form=K, space=Z)
@@ -77,3 +80,8 @@ class Definiteness:
         reach = self.scales * np.linalg.norm(inverse, axis=0)
         x = np.linalg.norm(inverse @ (self.scales * s)) + reach @ lost
         return SURE * float(reach.max() * x)
+
+
+def _times_q(matrix: Array, reflectors: Array, factors: Array) -> Array:
+    """A Q (n, n) by the k reflectors of a QR factorization, in k n² operations."""
+    return ormqr("R", "N", reflectors, factors, matrix, len(matrix))[0]
