@@ -83,6 +83,13 @@ def magnitudes(vectors: Array) -> Array:
     return np.hypot(vectors[..., 0], vectors[..., 1])
 
 
+def successive(index: IntArray) -> IntArray | slice:
+    """A slice where indices follow each other, with which NumPy adds several times faster."""
+    if len(index) and (index[1:] - index[:-1] == 1).all():
+        return slice(int(index[0]), int(index[-1]) + 1)
+    return index
+
+
 def _as_array(value: Any, what: str) -> NDArray[Any]:
     """The array of NumPy that a value is or can be made into, without masked entries."""
     if type(value) is np.ndarray:

@@ -10,7 +10,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, IntArray, successive
 from bemcontact.bem.body import Body
 from bemcontact.bem.bonds import Bond, eliminate
 from bemcontact.bem.boundary_values import BoundaryState
@@ -285,7 +285,15 @@ def _observe(part: CondensedPart, compliance: Array, free_displacement: Array) -
         result[:, free] += change[free] * response.rows(column[free]).T
     given = [np.sum(points.change * item.values.displacement[points.node], axis=1) for item in system.loadings]
     np.add.at(free_displacement, points.gap, result[:s].T * system.length + np.column_stack(given))
-    np.add.at(compliance, (points.gap[:, None], points.number), result[s:].T * (system.length / system.stress))
+    gaps, numbers, added = (
+        successive(points.gap),
+        successive(points.number),
+        result[s:].T * (system.length / system.stress),
+    )
+    if isinstance(gaps, slice) and isinstance(numbers, slice):
+        compliance[gaps, numbers] += added
+    else:
+        np.add.at(compliance, (points.gap[:, None], points.number), added)
 
 
 def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> BoundaryState:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
+from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray, successive
 from bemcontact.bem import kernels, reference_element
 from bemcontact.bem.kernels import GaussRule
 from bemcontact.bem.mesh import Mesh
@@ -260,7 +260,7 @@ class Influence:
             result = kernels.regular(integrands, rule, with_U=with_U)
             self._add_to_rows(block, part, result.T)
             if result.U is not None:
-                block.G[:, :, _successive(self._slot[part])] = result.U
+                block.G[:, :, successive(self._slot[part])] = result.U
 
     def _near(self, block: InfluenceRows, collocation: Collocation, element: IntArray) -> None:
         """Every point of the block with some elements, each pair by the rule for its own root."""
@@ -306,9 +306,9 @@ class Influence:
     def _add_to_rows(self, block: InfluenceRows, element: IntArray | slice, T: Array) -> None:
         """Add the integrals of T over some elements (4, 3, e, R)."""
         start, middle, end = self.mesh.elements[element].T
-        block.F[:, _successive(start)] += T[:, 0]
-        block.F[:, _successive(middle)] = T[:, 1]
-        block.F[:, _successive(end)] += T[:, 2]
+        block.F[:, successive(start)] += T[:, 0]
+        block.F[:, successive(middle)] = T[:, 1]
+        block.F[:, successive(end)] += T[:, 2]
 
     def _turn_corners(self, block: InfluenceRows, collocation: Collocation) -> None:
         """The free term at nodes between two elements: -i times the interior angle."""
@@ -330,10 +330,3 @@ def _sums(traction: Array, U: Array) -> Array:
     x, y = np.moveaxis(traction.reshape(len(traction), 2, 3 * traction.shape[-1]), 1, 0)
     xx, yy, xy = U.reshape(3, x.shape[-1], U.shape[-1])
     return np.stack([x @ xx + y @ xy, x @ xy + y @ yy], axis=1)
-
-
-def _successive(index: IntArray) -> IntArray | slice:
-    """A slice where indices follow each other, which NumPy adds several times faster."""
-    if len(index) and (index[1:] - index[:-1] == 1).all():
-        return slice(int(index[0]), int(index[-1]) + 1)
-    return index
