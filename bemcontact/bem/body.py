@@ -138,6 +138,8 @@ class Body:
     @cached_property
     def pinned_motions(self) -> FreeMotions:
         """The motions that nothing determines: those that change no gap, and spins."""
+        if not len(self.spins):
+            return self.unseen
         return replace(self.unseen, coefficients=np.vstack([self.unseen.coefficients, self.spins.coefficients]))
 
     @cached_property

@@ -269,8 +269,9 @@ def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray, kinds: IntArray) -
         sense_of = np.ones(len(mesh.nodes))
         sense_of[piece.nodes] = sense[first : first + len(piece.nodes)]
         carrier, signs = point_of[mesh.elements[piece.elements]], sense_of[mesh.elements[piece.elements]]
-        at_jump = np.isin(mesh.elements[piece.elements], piece.nodes[jumps[first : first + len(piece.nodes)]])
-        carrier, signs = (np.where(at_jump, values[:, [1]], values) for values in (carrier, signs))
+        if jumps.any():
+            at_jump = np.isin(mesh.elements[piece.elements], piece.nodes[jumps[first : first + len(piece.nodes)]])
+            carrier, signs = (np.where(at_jump, values[:, [1]], values) for values in (carrier, signs))
         beyond = piece.bonded | piece.goes_on
         for goes_on, element, end in zip(beyond.tolist(), (0, -1), (0, 2), strict=True):
             if goes_on:

@@ -151,6 +151,8 @@ class ContactPoints:
         far = np.where(other.node >= 0, other.node, self.node)
         sides = np.column_stack([self.node, far])[point]
         bonded = (at[:, None] != sides).all(axis=1) & (self.tied[at][:, None] == self.tied[sides]).any(axis=1)
+        if not bonded.any():
+            return node, gap, change
         shared = np.zeros(len(self), bool)
         shared[point[bonded]] = True
         forces = self.mesh.tributary[element, local, None] * np.concatenate([self.tractions, other.traction])

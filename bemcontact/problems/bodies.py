@@ -210,7 +210,11 @@ def named_loops(boundary: Boundary, body: str) -> tuple[tuple[Edge, ...], ...]:
     """Loops of a boundary, with the names that edges have in the problem."""
     if not body:
         return boundary.loops
-    return tuple(tuple(replace(edge, name=qualified(body, edge.name)) for edge in loop) for loop in boundary.loops)
+    if body not in boundary.in_bodies:
+        boundary.in_bodies[body] = tuple(
+            tuple(replace(edge, name=qualified(body, edge.name)) for edge in loop) for loop in boundary.loops
+        )
+    return boundary.in_bodies[body]
 
 
 def placed(boundary: Boundary, body: BodySpec) -> Boundary:

@@ -46,6 +46,7 @@ class Boundary(SpecModel):
     """The boundary of the body: an outer loop of edges, and loops around holes."""
 
     example: ClassVar[str] = "{outer: [{name: bottom, start: [0, 0]}, …]}"
+    inside: ClassVar[tuple[str, ...]] = ("in_bodies",)
     other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
         ("hole", "bore", "inner", "inside"), "holes is a list of holes, each a list of edges, clockwise"
     )
@@ -141,6 +142,11 @@ class Boundary(SpecModel):
     def loops(self) -> tuple[tuple[Edge, ...], ...]:
         """All loops of edges with both ends, the outer one first."""
         return tuple(_joined(loop) for loop in self.loop_specs)
+
+    @cached_property
+    def in_bodies(self) -> dict[str, tuple[tuple[Edge, ...], ...]]:
+        """The loops with the names of edges in a problem, by body, as far as `named_loops` was asked for them."""
+        return {}
 
     def with_element_ends(self, ends: Mapping[str, Sequence[float]]) -> Self:
         """Copy with all element ends of some edges given, see `Problem`; the curves are not checked again."""
