@@ -192,7 +192,7 @@ class Loop:
         """Samples of each edge between its corners, with the sizes there; all edges at once, for few calls."""
         known = np.mod(np.append(limits[:, :2].ravel(), [layer.position for layer in layers]), self.length)
         samples = np.concatenate(
-            [np.unique([*own, *known[(known > own[0]) & (known < own[-1])]]) for own in corners]
+            [np.unique(np.append(own, known[(known > own[0]) & (known < own[-1])])) for own in corners]
         )  # the end of an edge and the start of the next are two samples at one place
         size = self.size_at(samples, limits, layers)
         for _ in range(60):

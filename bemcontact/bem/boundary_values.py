@@ -94,7 +94,6 @@ def boundary_values(problem: Problem, conditions: Mapping[str, Condition], mesh:
         stiffness=np.zeros((m, 3, 2, 2)),
     )
     owner = np.full((N, 2), -1)
-    largest = _largest_displacement(conditions, mesh)
     issues = []
     for index, name in enumerate(mesh.edge_names):
         if name not in conditions:
@@ -104,10 +103,10 @@ def boundary_values(problem: Problem, conditions: Mapping[str, Condition], mesh:
         for axis, field in _given(condition.displacement):
             value = field.at(mesh.nodes[nodes])
             taken = values.displacement_given[nodes, axis]
-            wrong = taken & (abs(value - values.displacement[nodes, axis]) > CONTRADICTION * largest)
-            issues += [
-                _contradiction(mesh, mesh.edge_names[owner[node, axis]], name, axis, int(node)) for node in nodes[wrong]
-            ]
+            if taken.any():
+                allowed = CONTRADICTION * _largest_displacement(conditions, mesh)
+                wrong = nodes[taken & (abs(value - values.displacement[nodes, axis]) > allowed)].tolist()
+                issues += [_contradiction(mesh, mesh.edge_names[owner[node, axis]], name, axis, node) for node in wrong]
             values.displacement[nodes, axis] = value
             values.displacement_given[nodes, axis] = True
             values.traction_unknown[elements, axis] = True
