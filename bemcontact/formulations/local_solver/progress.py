@@ -82,7 +82,6 @@ class SearchState:
         chosen = options.max_iterations
         self.limit = 1000 + 20 * statement.lower.size if chosen is None else chosen
         self._traveled, self._passed, self._seen, self.far = np.zeros(self.x.size), [], None, 0.0
-        self._own: tuple[Array, Array, Array] | None = None
         self._measured, self._violation = None, self._traveled
         self.place(self.x)
 
@@ -159,11 +158,7 @@ class SearchState:
 
         A component that is zero in truth is rounding of the points before it, and counts with its size.
         """
-        traveled = self.traveled
-        if self._own is None or self._own[0] is not traveled or self._own[1] is not self.x:
-            size = np.maximum(np.abs(self.x), EPS * traveled)
-            self._own = traveled, self.x, self.statement.curved(size) + self.statement.absolute[1]
-        terms = self._own[2]
+        terms = self.statement.curved(np.maximum(np.abs(self.x), EPS * self.traveled)) + self.statement.absolute[1]
         return terms + np.abs(of_rows).dot(np.abs(rows)) if of_rows.size else terms
 
     def fine_zero(self, terms: Array, rows: Array, inverse: Array, reach: Array) -> Array:
