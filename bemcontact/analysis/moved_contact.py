@@ -29,6 +29,8 @@ UNSEEN = 1e-9
 """Normal displacement of pressed points by a free motion, over the largest one, that is none."""
 ALIKE = 0.1
 """Difference of displacements on the boundary, over one of them, up to which the body moves as a whole."""
+STILL = 1e-7
+"""Motion over the displacement scale of contact that is round-off."""
 
 Judgement = tuple[Penetration | None, tuple[str, ...]]
 """What is so far off that the result is withheld, or else notes."""
@@ -134,13 +136,19 @@ class MovedContact:
 
     def motion_against(self, zone: str, motion: Array) -> str:
         """Say by how much two bodies, or a body and a rigid surface, move against each other."""
-        by = self.way(motion)
+        turns, by = self._still(motion), self.way(motion)
         if isinstance(self.gaps.surfaces[zone], BodySurface):
-            return f"both sides of '{zone}' move by {by} against each other"
-        return f"the body moves by {by} against the surface of '{zone}'"
+            return f"both sides of '{zone}' {'turn' if turns else f'move by {by}'} against each other"
+        return f"the body {'turns' if turns else f'moves by {by}'} against the surface of '{zone}'"
+
+    def _still(self, motion: Array) -> bool:
+        """Whether a motion (2,) [L] is round-off, as that of the only point under pressure on a line of symmetry."""
+        return bool(np.hypot(*motion) <= STILL * self.contact.scales.displacement)
 
     def remedy(self, motion: Array) -> str:
         """What to do about a motion: draw the body there if it moves as a whole."""
+        if self._still(motion):
+            return "expect an error of this size, or take a program for large displacements"
         displacement = self.gaps.state.displacement.reshape(-1, 2)
         spread = np.hypot(*np.ptp(displacement, axis=0))
         if spread <= ALIKE * np.hypot(*motion):

@@ -28,12 +28,12 @@ from bemcontact.report.peak_places import level_zones
 
 ZONE_COLUMNS = (
     "case", "zone", "intervals", "length", "peak", "peak_error", "peak_x", "peak_y", "force_x", "force_y",
-    "force_error", "moment",
+    "force_error", "moment", "body",
 )  # fmt: skip
 """Columns of zones.csv."""
 INTERVAL_COLUMNS = (
     "case", "zone", "interval", "start_x", "start_y", "end_x", "end_y", "end_error", "length", "length_error", "peak",
-    "peak_x", "peak_y", "force_x", "force_y", "moment",
+    "peak_x", "peak_y", "force_x", "force_y", "moment", "body",
 )  # fmt: skip
 """Columns of intervals.csv."""
 POINT_COLUMNS = ("case", "zone", "x", "y", "normal_x", "normal_y", "arc", "pressure", "gap", "touching")
@@ -128,7 +128,8 @@ def _intensities(record: JsonObject, zone: str, units: Units) -> Iterator[str]:
 def zones_csv(results: Result | CaseResults) -> str:
     """Write a line for each zone of each load case: what it carries, all its intervals of contact together.
 
-    Errors are absolute, in the unit of the number before them; empty where there is no number.
+    Errors are absolute, in the unit of the number before them; empty where there is no number. The body is the one of
+    several on which the force acts.
     """
     return _written(
         ZONE_COLUMNS, (row for case, result in by_case(results).items() for row in _zone_lines(case, result))
@@ -149,7 +150,7 @@ def _zone_lines(case: str, result: Result) -> Iterator[list[Any]]:
         lengths = [item.length for item in result.footprint.intervals if item.zone == zone]
         yield [
             case, zone, len(lengths), sum(lengths), value, error, *at, *result.footprint.forces[zone],
-            _error(bars.get(("force", zone, None))), result.footprint.moments[zone],
+            _error(bars.get(("force", zone, None))), result.footprint.moments[zone], _pressed(result, zone),
         ]  # fmt: skip
 
 
@@ -176,7 +177,13 @@ def _interval_lines(case: str, result: Result) -> Iterator[list[Any]]:
             case, item.zone, order, *item.start, *item.end, max(known) if len(known) == len(ends) else "",
             item.length, _error(bars.get(("length", item.zone, order))),
             *(["", "", ""] if item.peak is None else [item.peak.pressure, *item.peak.at]), *item.force, item.moment,
+            _pressed(result, item.zone),
         ]  # fmt: skip
+
+
+def _pressed(result: Result, zone: str) -> str:
+    """The body on which the force of a zone acts; empty for an only one."""
+    return result.sides.get(zone, ("", ""))[0]
 
 
 def _error(bar: ErrorBar | None) -> float | str:

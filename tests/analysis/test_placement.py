@@ -738,3 +738,30 @@ def test_a_free_ring_in_a_groove_presses_on_its_walls_as_half_of_it_does(squeeze
     assert on_wall == pytest.approx(half_on_wall, rel=0.05)
     if squeeze > 0.1:
         assert any("both sides of 'groove' move by" in note for note in whole.notes)
+
+
+def test_sides_that_do_not_move_against_each_other_are_said_to_turn():
+    """By symmetry the only point under pressure moves with the block, up to round-off; the normals beside it turn."""
+    arc = {"name": "under", "kind": "arc", "center": [0, 8], "radius": 8, "angles": [-90, 0]}
+    quarter = [arc, {"name": "top", "end": [0, 8]}, {"name": "axis"}]
+    corners = {"bottom": (0, -16), "right": (16, -16), "top": (16, 0), "axis": (0, 0)}
+    block = [{"name": name, "start": corner} for name, corner in corners.items()]
+    on_axis = {"axis": {"displacement": {"x": 0}}}
+    held = {**on_axis, "bottom": {"displacement": {"y": 0}}}
+    bodies = {
+        name: {
+            "material": {"young_modulus": modulus, "poisson_ratio": 0.3},
+            "boundary": {"outer": [{**edge, "elements": 6} for edge in edges]},
+            "conditions": conditions,
+        }
+        for name, modulus, edges, conditions in (
+            ("roller", 1000, quarter, {**on_axis, "top": {"pressure": 1}}),
+            ("block", 500, block, held),
+        )
+    }
+    contacts = {"track": {"between": ["roller/under", "block/top"]}}
+    result = solve(problem({"name": "pair", "bodies": bodies, "contacts": contacts, "accuracy": None}))
+    assert np.count_nonzero(result.pressure) == 1
+    (note,) = [note for note in result.notes if "force between them changes" in note]
+    assert note.startswith("both sides of 'track' turn against each other")
+    assert "draw the body" not in note

@@ -2,6 +2,7 @@
 
 import csv
 import io
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -46,6 +47,18 @@ def test_zones_have_the_forces_and_moments_that_add_up_to_the_resultant(name: st
             for column in ("length", "force_x", "force_y", "moment"):
                 total = sum(float(part[column]) for part in of_case if part["zone"] == zone)
                 assert total == pytest.approx(float(line[column]), rel=1e-9, abs=1e-12)
+
+
+def test_forces_name_the_body_on_which_they_act():
+    """A stack under 5 N/mm² on 30 mm: the lower body of each joint is pressed down by 150 N/mm, the upper one up."""
+    stack = bemcontact.load(Path(__file__).parents[2] / "models" / "bodies" / "stack_of_three.yaml").to_dict()
+    stack["contacts"]["lower joint"]["between"] = ["base/top", "middle/bottom"]
+    result = bemcontact.solve(bemcontact.problem(stack))
+    for text in (zones_csv(result), intervals_csv(result)):
+        found = {line["zone"]: (line["body"], float(line["force_y"])) for line in read(text)}
+        assert found["upper joint"] == ("top", pytest.approx(150))
+        assert found["lower joint"] == ("base", pytest.approx(-150))
+    assert {line["body"] for line in read(zones_csv(rolled()))} == {""}
 
 
 def test_each_stretch_of_contact_has_the_force_and_the_peak_of_its_own():

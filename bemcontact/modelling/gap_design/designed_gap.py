@@ -74,13 +74,17 @@ class LoadState(WithHints):
 
     @property
     def infinite(self) -> bool:
-        """Whether the peak rises steeply to an end of a zone, as at a sharp edge: then it is a number of the mesh."""
+        """Whether the peak rises steeply to an end of a zone, as at a sharp edge: then it is a number of the mesh.
+
+        Points beside it without pressure tell nothing: so is a round body on a coarse mesh, cut at a line of symmetry.
+        """
         at = int(np.argmax(self.pressure))
         own = self.contact.points_of_run(int(self.contact.run[at]))
         if np.isfinite(self.contact.run_length[self.contact.run[at]]) or at not in own[[0, -1]]:
             return False
         beside = own[1:3] if at == own[0] else own[-3:-1]
-        return bool(self.pressure[at] > STEEP * self.pressure[beside].max(initial=0.0))
+        pressed = self.pressure[beside]
+        return bool((pressed > 0).all() and self.pressure[at] > STEEP * pressed.max(initial=0.0))
 
     def record(self) -> LoadStateRecord:
         """Return the JSON form of the state."""
