@@ -770,6 +770,37 @@ def test_a_narrow_slot_of_one_body_is_certified_as_two_bonded_ones():
     assert cut.forces["lips"][1] == pytest.approx(half.forces["lips"][1], rel=5e-3)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("depth", [0.02, 0.05])
+def test_folded_elements_between_feet_of_pads_are_refused_with_what_to_name(depth):
+    """Twins with a round pad whose feet are opposite to each other: the pads alone are one of them on a plane."""
+    gap, radius = (2 * depth if depth > 0.03 else 0.03), (1 + depth**2) / 2 / depth
+    turn = math.degrees(math.asin(1 / radius))
+    pad = {"name": "pad", "kind": "arc", "center": [0, gap + radius - depth], "radius": radius}
+    edges = [
+        {"name": "before", "start": [-4, gap], "end": [-1, gap]},
+        {**pad, "angles": [-90 - turn, -90 + turn]},
+        {"name": "behind", "start": [1, gap], "end": [4, gap]},
+        {"name": "right", "end": [4, gap + 3]},
+        {"name": "top", "end": [-4, gap + 3]},
+        {"name": "left"},
+    ]
+    up = elastic({"outer": edges}, {"left": {"displacement": {"x": 0}}, "top": {"pressure": 0.1}})
+    own = {"right": {"displacement": {"x": 0}}, "top": {"pressure": 0.1}}
+    bodies = {"up": up, "low": {"copy_of": "up", "rotate": 180, "about": [0, 0], "conditions": own}}
+    lines = ("before", "pad", "behind")
+    with pytest.raises(bemcontact.ProblemError, match="cross each other; name the edges that come to touch"):
+        solved(bodies, 0.03, c=[[f"up/{name}" for name in lines], [f"low/{name}" for name in lines]])
+    pads = solved(bodies, 0.03, c={"between": ["up/pad", "low/pad"], "gap": -2 * (gap - depth)})
+    plane = {"kind": "plane", "point": [0, gap - depth], "normal": [0, 1]}
+    zones = {"c": {"edges": ["pad"], "surface": plane}}
+    half = bemcontact.solve(stated(name="half", **up, accuracy=0.03, contact_zones=zones))
+    assert pads.holds
+    assert pads.peak is not None
+    assert half.peak is not None
+    assert pads.peak.pressure == pytest.approx(half.peak.pressure, rel=0.01)
+
+
 def by_zone(result):
     """Names of contacts, places and pressures of the shares of all points, in a fixed order, whoever owns a point."""
     assert result.problem is not None
