@@ -78,6 +78,22 @@ def coarse_answer(asked: float | None) -> Iterator[str]:
         )
 
 
+def sides_of_one_body(problem: Problem) -> Iterator[str]:
+    """Note of an answer that is not certified that both sides of a contact are on one body, and may be on two.
+
+    In a narrow slot the equations of opposite places are nearly the same, as on the faces of a crack: its opening has
+    an error of the mesh of the whole body, and the compliance may not be positive definite. Those of two bodies differ.
+    """
+    for contact in problem.contacts:
+        body, other = problem.sides_of(contact)
+        if body == other:
+            yield (
+                f"both sides of '{contact}' are on the body '{body}': across a narrow slot, equations of opposite "
+                "places are nearly the same, and finer elements help little; cut the body along the line of the slot "
+                f"in two under bodies, with bonded edges where it is whole, and state '{contact}' between them"
+            )
+
+
 def floating(contact: CondensedContact, touching: NDArray[np.bool_]) -> Iterator[str]:
     """Note that no point carries pressure although a body or tool is held by contact."""
     if contact.free_motions and not touching.any():

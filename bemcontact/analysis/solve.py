@@ -8,7 +8,7 @@ from typing import Self, TypeVar, Unpack, cast
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.singularities import Singularity
-from bemcontact.analysis.diagnostics import diagnostics
+from bemcontact.analysis.diagnostics import diagnostics, sides_of_one_body
 from bemcontact.analysis.penetration import misfit
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import NO_MESH, Accuracy
@@ -302,6 +302,8 @@ def assessed(
                 deepest, said = misfit(gaps, condensation.body, contact, solution, where, prepared.accuracy.infinite)
             body = None if condensation is None else condensation.body
             said += tuple(diagnostics(contact, solution, where, body, met=prepared.accuracy.met is True))
+        if condensation is not None and not certificate.certified:
+            said += tuple(sides_of_one_body(condensation.body.problem))
         notes = (*contact.notes, *solution.notes, *said)
     gap = contact.initial_gap + solution.displacement
     return Result(

@@ -160,7 +160,7 @@ def _matched(
         theirs = fractions[name][first * refine : last * refine]
         nodes = _snapped(feet(item, edges[name], theirs.ravel())).reshape(-1, 3)[::-1, ::-1]
         places = np.append(nodes[::refine, 0], nodes[-1, 2])
-        if (np.diff(places) < -LEAST).any():
+        if (np.diff(places) < -LEAST).any() or (np.diff(nodes, axis=1) <= 0).any():
             raise ProblemError(_crossing(item))
         if (np.diff(places) < LEAST).any():
             raise ProblemError(_too_short(item))

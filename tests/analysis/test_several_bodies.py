@@ -714,6 +714,93 @@ def test_contacts_of_one_rim_with_two_faces_may_state_their_sides_in_any_order(l
         assert force == pytest.approx(0.2 * math.pi * 16 * np.array([sign, 1]), rel=2e-3)
 
 
+@pytest.mark.slow
+def test_a_narrow_slot_of_one_body_is_certified_as_two_bonded_ones():
+    """A slot of 0.0046 of its length that closes at its mouth: half of the body on the plane of symmetry is known."""
+    length, tip, radius = 8.0, 3.0, 0.0115
+    upper = [
+        {"name": "whole", "start": [0, 0], "end": [tip - radius, 0]},
+        {"name": "round", "kind": "arc", "center": [tip, 0], "radius": radius, "angles": [180, 90]},
+        {"name": "lip", "start": [tip, radius], "end": [length, radius]},
+        {"name": "mouth", "end": [length, 2]},
+        {"name": "pressed", "end": [6, 2]},
+        {"name": "top", "end": [0, 2]},
+        {"name": "left", "end": [0, 0]},
+    ]
+    lower = [
+        {"name": "left", "start": [0, 0], "end": [0, -2]},
+        {"name": "bottom", "end": [6, -2]},
+        {"name": "pressed", "end": [length, -2]},
+        {"name": "mouth", "end": [length, -radius]},
+        {"name": "lip", "end": [tip, -radius]},
+        {"name": "round", "kind": "arc", "center": [tip, 0], "radius": radius, "angles": [270, 180]},
+        {"name": "whole", "end": [0, 0]},
+    ]
+    loads = {"left": {"displacement": {"x": 0, "y": 0}}, "pressed": {"pressure": 2.0}}
+    both = {"upper": elastic({"outer": upper}, loads), "lower": elastic({"outer": lower}, loads)}
+    cut = bemcontact.solve(
+        stated(
+            name="cut", bodies=both, bonded={"middle": ["upper/whole", "lower/whole"]},
+            contacts={"lips": {"between": ["upper/lip", "lower/lip"]}}, accuracy=0.02,
+        )
+    )  # fmt: skip
+    round_tip = {"name": "round", "kind": "arc", "center": [tip, 0], "radius": radius, "angles": [270, 90]}
+    outer = [
+        *({**edge, "name": f"low {edge['name']}"} for edge in lower[1:5]),
+        round_tip,
+        *upper[2:6],
+        {"name": "left", "start": [0, 2], "end": [0, -2]},
+    ]
+    outer[0] = {**outer[0], "start": [0, -2]}
+    whole = {"clip": elastic({"outer": outer}, {**loads, "low pressed": {"pressure": 2.0}})}
+    slot = solved(whole, 0.02, lips=["clip/lip", "clip/low lip"])
+    plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+    half = bemcontact.solve(
+        stated(
+            name="half", **elastic({"outer": upper}, {**loads, "whole": {"displacement": {"y": 0}}}), accuracy=0.02,
+            contact_zones={"lips": {"edges": ["lip"], "surface": plane}},
+        )
+    )  # fmt: skip
+    assert cut.holds
+    assert half.holds
+    said = [note for note in slot.notes if "both sides of 'lips' are on the body 'clip'" in note]
+    assert len(said) == (not slot.certified)
+    assert not any("both sides" in note for note in cut.notes)
+    assert cut.forces["lips"][1] > 1
+    assert cut.forces["lips"][1] == pytest.approx(half.forces["lips"][1], rel=5e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("depth", [0.02, 0.05])
+def test_folded_elements_between_feet_of_pads_are_refused_with_what_to_name(depth):
+    """Twins with a round pad whose feet are opposite to each other: the pads alone are one of them on a plane."""
+    gap, radius = (2 * depth if depth > 0.03 else 0.03), (1 + depth**2) / 2 / depth
+    turn = math.degrees(math.asin(1 / radius))
+    pad = {"name": "pad", "kind": "arc", "center": [0, gap + radius - depth], "radius": radius}
+    edges = [
+        {"name": "before", "start": [-4, gap], "end": [-1, gap]},
+        {**pad, "angles": [-90 - turn, -90 + turn]},
+        {"name": "behind", "start": [1, gap], "end": [4, gap]},
+        {"name": "right", "end": [4, gap + 3]},
+        {"name": "top", "end": [-4, gap + 3]},
+        {"name": "left"},
+    ]
+    up = elastic({"outer": edges}, {"left": {"displacement": {"x": 0}}, "top": {"pressure": 0.1}})
+    own = {"right": {"displacement": {"x": 0}}, "top": {"pressure": 0.1}}
+    bodies = {"up": up, "low": {"copy_of": "up", "rotate": 180, "about": [0, 0], "conditions": own}}
+    lines = ("before", "pad", "behind")
+    with pytest.raises(bemcontact.ProblemError, match="cross each other; name the edges that come to touch"):
+        solved(bodies, 0.03, c=[[f"up/{name}" for name in lines], [f"low/{name}" for name in lines]])
+    pads = solved(bodies, 0.03, c={"between": ["up/pad", "low/pad"], "gap": -2 * (gap - depth)})
+    plane = {"kind": "plane", "point": [0, gap - depth], "normal": [0, 1]}
+    zones = {"c": {"edges": ["pad"], "surface": plane}}
+    half = bemcontact.solve(stated(name="half", **up, accuracy=0.03, contact_zones=zones))
+    assert pads.holds
+    assert pads.peak is not None
+    assert half.peak is not None
+    assert pads.peak.pressure == pytest.approx(half.peak.pressure, rel=0.01)
+
+
 def by_zone(result):
     """Names of contacts, places and pressures of the shares of all points, in a fixed order, whoever owns a point."""
     assert result.problem is not None
