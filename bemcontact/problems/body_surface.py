@@ -160,9 +160,18 @@ class BodySurface:
             tilted = abs(cross(offset[at], normals[at])) > AT_END * away[at]
             at = at[tilted & (away[at] > flush)]
             outward = np.sum(offset[at] * sums[number[at], end], axis=1)
-            side = np.where(outward < -AT_END * away[at], -1.0, 1.0)  # straight on from an end is not inside
+            behind = outward < -AT_END * away[at]  # straight on from an end is not inside
+            behind[behind] = ~self._outside(points[at[behind]])
+            side = np.where(behind, -1.0, 1.0)
             normals[at], corner[at] = side[:, None] * offset[at] / away[at, None], True
         return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner, at_corner)
+
+    def _outside(self, points: Array) -> BoolArray:
+        """Whether points (k, 2) are outside the body, for an end of some of its edges does not tell."""
+        every = tuple(chain.from_iterable(self.loops))
+        if len(self.edges) == len(every) or not len(points):
+            return np.zeros(len(points), bool)
+        return replace(self, edges=every, nearest={}).feet(points).gap > 0
 
     def pairs(self, points: Array, inward: Array | None = None) -> Feet:
         """Places that form pairs with points (k, 2) [L] of the first side, and the common normals there.

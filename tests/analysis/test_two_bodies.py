@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from several_bodies import block, elastic, polygon, problem
 
 import bemcontact
 from bemcontact.problems.body_surface import BodySurface
@@ -196,3 +197,19 @@ def test_the_angle_of_contact_of_a_pin_along_its_load():
         (interval,) = followed.path.footprint(load / 1250).intervals
         x, y = interval.end
         assert np.degrees(np.arctan2(x, -y)) == pytest.approx(half_angle, rel=1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("between", [["bolt/under head", "washer/top"], ["washer/top", "bolt/under head"]])
+def test_a_shank_passes_a_washer(between: list[str]):
+    """It has half a millimeter of play beside the edge that is in contact; the washer bears 200 N/mm² on 4 mm."""
+    shank = polygon(axis=(0, 6), cut=(0, -6), shank=(4, -6), **{"under head": (4, 2)}, side=(8, 2), top=(8, 6))
+    conditions = {"axis": {"symmetry": "x"}, "cut": {"traction": {"y": -200}}}
+    bodies = {
+        "bolt": elastic(shank, conditions, 210e3),
+        "washer": elastic(block((4.5, 12), (0, 2)), {"bottom": {"displacement": {"y": 0}}}, 210e3),
+    }
+    result = bemcontact.solve(problem(bodies, accuracy=0.1, head=between))
+    assert result.certificate.certified
+    assert not any("lies behind" in note for note in result.notes)
+    assert abs(result.forces["head"][1]) == pytest.approx(800, rel=0.01)

@@ -40,6 +40,16 @@ def test_places_on_the_normals_at_a_corner_are_told_from_those_inside_an_edge():
     assert feet.at_corner.tolist() == [True, True, False]
 
 
+@pytest.mark.parametrize("deep", [0.4, 0.6, 3.0])
+def test_a_place_beside_the_body_is_outside_of_some_of_its_edges_too(deep):
+    """The shank of a bolt in a washer: of its top alone the nearest place is the corner, however deep the shank is."""
+    boundary = Boundary(**block((0, 9), (0, 4)))
+    top = tuple(edge for edge in boundary.edges if edge.name == "top")
+    own = BodySurface(body="washer", elastic=True, edges=top, loops=boundary.loops)
+    feet = own.feet(np.array([[-0.5, 4 - deep], [0.5, 4 - deep]]))
+    assert np.allclose(feet.gap, [np.hypot(0.5, deep), -deep])
+
+
 @given(st.floats(0, 6.28), st.floats(-100, 100))
 def test_the_place_beyond_a_corner_is_found_in_turned_bodies(angle, away):
     """Round-off may put the closest place of one that goes on straight beyond a corner on either side of the corner."""
