@@ -48,7 +48,7 @@ WEAKEST = 3e-4, 0.01
 Around a closed ring of wedges the states with λ = 1 are so many that others are not told from them so near by."""
 STRONGEST = 0.9
 """Exponent of stress beyond which there is none."""
-HIGHEST = 3.0
+HIGHEST = 2.0
 """Imaginary part of λ beyond which there is none."""
 UNPRESSED = 1e-6
 """Pressure on a face in contact, over the largest stress of a state, that is none."""
@@ -173,8 +173,8 @@ def beside_bond(wedges: Wedges) -> BesideBond | None:
     power, own = 1 - known[0], wedges.at
     state = wedges.own_state(np.linalg.svd(_conditions(wedges, power))[2][-1])
     pressure, traction = 0.0, 0j
-    for face, at, sign in zip(own.faces, own.directions, OUTWARD, strict=True):
-        outward = sign * complex(_field(at, power, own.poisson_ratio)[1] @ state)
+    for side, (face, sign) in enumerate(zip(own.faces, OUTWARD, strict=True)):
+        outward = sign * complex(_field(own, side, power)[1] @ state)
         if face.contact:
             pressure = -(outward * np.conj(face.direction)).real
         if face.bonded:
@@ -242,10 +242,8 @@ def slow_change(wedges: Wedges, loads: tuple[complex, ...]) -> SlowChange | None
 
     def pressures(state: Array) -> tuple[float, float]:
         one, other = (
-            -sign * float((_field(at, 1.0, own.poisson_ratio)[1] * np.conj(face.direction)).real @ state)
-            if face.contact
-            else 0.0
-            for face, at, sign in zip(own.faces, own.directions, OUTWARD, strict=True)
+            -sign * float((_field(own, side, 1.0)[1] * np.conj(face.direction)).real @ state) if face.contact else 0.0
+            for side, (face, sign) in enumerate(zip(own.faces, OUTWARD, strict=True))
         )
         return one, other
 
@@ -288,9 +286,9 @@ def _presses(wedges: Wedges, power: float) -> bool:
     own = wedges.at
     _, sizes, states = np.linalg.svd(_conditions(wedges, power))
     states = wedges.own_state(states[sizes <= 10 * ROOT * sizes[0]])
-    for face, at in zip(own.faces, own.directions, strict=True):
+    for side, face in enumerate(own.faces):
         if face.contact:
-            _, traction = _field(at, power, own.poisson_ratio)
+            _, traction = _field(own, side, power)
             if np.abs(states @ (traction * np.conj(face.direction)).real).max() > UNPRESSED:
                 return True
     return False
@@ -357,9 +355,9 @@ class _FaceRows(NamedTuple):
 
 def _on_face(wedge: Wedge, side: int, direction: complex, power: complex | Array | ComplexArray) -> _FaceRows:
     """The rows of a face of a wedge in a direction, for complex λ continued analytically from those of real ones."""
-    theta, real = wedge.directions[side], not np.iscomplexobj(power)
-    values = _field(theta, power, wedge.poisson_ratio)
-    mirrored = values if real else _field(theta, np.conj(power), wedge.poisson_ratio)
+    real = not np.iscomplexobj(power)
+    values = _field(wedge, side, power)
+    mirrored = values if real else _field(wedge, side, np.conj(power))
 
     def part(number: int, at: complex) -> Array:
         one, other = values[number] * np.conj(at), np.conj(mirrored[number] * np.conj(at))
@@ -369,24 +367,22 @@ def _on_face(wedge: Wedge, side: int, direction: complex, power: complex | Array
     return _FaceRows((normal, along), (pressure, shear))
 
 
-def _field(
-    theta: float, power: complex | Array | ComplexArray, poisson_ratio: float
-) -> tuple[ComplexArray, ComplexArray]:
-    """2 G u and the traction on a ray (…, 4), as complex numbers, at r = 1 for each of (Re A, Im A, Re B, Im B)."""
-    A, B = np.array([1, 1j, 0, 0]), np.array([0, 0, 1, 1j])
-    z, own = np.exp(1j * theta), np.asarray(power, complex)[..., None]
+def _field(wedge: Wedge, side: int, power: complex | Array | ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """2 G u and the traction on a face (…, 4), as complex numbers, at r = 1 for each of (Re A, Im A, Re B, Im B).
+
+    z^λ is one in the middle of the wedge, so that complex λ make no large numbers.
+    """
+    A, B, kappa = np.array([1, 1j, 0, 0]), np.array([0, 0, 1, 1j]), 3 - 4 * wedge.poisson_ratio
+    z, from_middle = np.exp(1j * wedge.directions[side]), (side - 0.5) * wedge.angle
+    own = np.asarray(power, complex)[..., None]
     its = own.conj()  # conjugates of functions of λ are those of its conjugate
 
+    def raised(at: ComplexArray) -> ComplexArray:
+        return np.exp(1j * from_middle * at)
+
     def slope(at: ComplexArray) -> ComplexArray:
-        return at * A * _power(theta, at - 1)
+        return at * A * raised(at) / z
 
-    displacement = (3 - 4 * poisson_ratio) * A * _power(theta, own) - np.conj(
-        np.conj(z) * slope(its) + B * _power(theta, its)
-    )
-    stress = its * slope(its) + np.conj(slope(own)) + its * B * _power(theta, its + 1)
+    displacement = kappa * A * raised(own) - np.conj(np.conj(z) * slope(its) + B * raised(its))
+    stress = its * slope(its) + np.conj(slope(own)) + its * B * raised(its) * z
     return displacement, 1j * z * np.conj(stress)
-
-
-def _power(theta: float, power: ComplexArray) -> ComplexArray:
-    """Power of z = e^(iθ), continuous in θ."""
-    return np.exp(1j * theta * power)

@@ -306,6 +306,35 @@ def test_stress_on_a_straight_bond_is_finite_and_at_the_tip_of_an_open_crack_on_
     assert stress_is_infinite(Wedges(cracked))
 
 
+@settings(max_examples=25, deadline=None)
+@given(
+    st.floats(-pi, pi), st.tuples(st.floats(-0.5, 0.49), st.floats(-0.5, 0.49)), st.floats(-5, 5),
+    st.sampled_from([0.0, 1e-9, -1e-9, 1e-6, -1e-6]),
+)  # fmt: skip
+def test_where_uniform_stress_is_a_state_none_is_infinite(turn, ratios, decades, off):
+    """In any direction, with round-off of angles: flat surfaces and contacts, right angles flush or in corners."""
+    stiffness, (below, above) = 10.0**decades, (contact_face(np.exp(1j * (turn + way * pi / 2))) for way in (-1, 1))
+    wall = contact_face(np.exp(1j * turn))
+    flat = Wedge(turn, pi, (below, below), ratios[0]), Wedge(turn + pi, pi, (above, above), ratios[1], stiffness)
+    flush = (
+        Wedge(turn - pi / 2, pi / 2 + off, (FREE, above), ratios[0]),
+        Wedge(turn, pi / 2 - off, (below, FREE), ratios[1], stiffness),
+    )
+    beside_axis = (
+        Wedge(turn - pi / 2, pi / 2, (wall, BONDED), ratios[0]),
+        Wedge(turn, pi / 2, (BONDED, wall), ratios[1], stiffness),
+    )
+    for wedges in (
+        single(turn, pi + off, (FREE, FREE), ratios[0]),
+        single(turn, pi / 2 + off, (below, FREE), ratios[0]),
+        single(turn, pi / 2 + off, (below, wall), ratios[0]),
+        Wedges(flat, closed=True),
+        Wedges(flush),
+        Wedges(beside_axis),
+    ):
+        assert not stress_is_infinite(wedges)
+
+
 def test_stress_at_a_corner_of_an_inclusion():
     """None of equal materials, cut as one likes; a rigid one in the limit is that of a wedge with clamped faces."""
     cuts = [Wedge(at, angle, (BONDED, BONDED), 0.3) for at, angle in ((0.0, 1.0), (1.0, 2.0), (3.0, 2 * pi - 3))]
