@@ -479,10 +479,8 @@ class SurfaceGaps(DisplacedSurfaces):
         elsewhere = np.zeros(len(mesh.elements), bool)
         for contact in problem.contacts:
             if contact != zone and {*problem.sides_of(contact)} == {*problem.sides_of(zone)}:
-                facing = mesh.facing.get(contact, np.full(len(mesh.elements), -1))
-                own = np.flatnonzero(facing >= 0)
-                elsewhere[own] |= of_surface[facing[own]]
-                elsewhere[facing[own]] |= of_surface[own]
+                across = mesh.across([contact])
+                elsewhere |= (across >= 0) & of_surface[across]
         return elsewhere
 
     def _bonded_to(self, body: str) -> BoolArray:
