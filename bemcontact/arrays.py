@@ -38,7 +38,7 @@ def real_array(value: Any, what: str, shape: Dimensions | None = None, *, finite
             raise ProblemError(f"{what} must contain real numbers; found {_described(value, array)}")
     _ensure_shape(array, what, shape)
     array = np.asarray(array, dtype=float)
-    if finite and not (np.abs(array) <= LARGEST_NUMBER).all():  # false also for what is not a number
+    if finite and array.size and not (np.abs(array) <= LARGEST_NUMBER).all():  # false also for what is not a number
         _complain(array, what)
     return array
 

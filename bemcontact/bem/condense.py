@@ -166,7 +166,7 @@ def condense_together(bodies: Sequence[Body]) -> CondensedTogether:
         own, others = systems[like], [(number, turn) for number, turn in turns.items() if number != like]
         members = [own, *(systems[number].turned(turn, own) for number, turn in others)]
         every = [loading for system in members for loading in system.loadings]
-        response = solve_system(replace(own, loadings=every) if others else own)
+        response = solve_system(replace(own, loadings=every), members[1:]) if others else solve_system(own)
         for i, (number, system) in enumerate(zip(turns, members, strict=True)):
             columns = [*range(i * len(loadings), (i + 1) * len(loadings)), *range(len(every), response.columns)]
             parts[number] = CondensedPart(
@@ -281,18 +281,18 @@ def _observe(part: CondensedPart, compliance: Array, free_displacement: Array) -
     points, s = system.points, len(system.loadings)
     result = np.zeros((response.columns, len(points.gap)))
     for change, column in zip(points.change.T, system.unknowns.displacement[points.node].T, strict=True):
-        free = np.flatnonzero(column >= 0) if column.min(initial=0) < 0 else slice(None)
+        seen = (column >= 0) & (change != 0)
+        free = slice(None) if seen.all() else np.flatnonzero(seen)
         result[:, free] += change[free] * response.rows(column[free]).T
     given = [np.sum(points.change * item.values.displacement[points.node], axis=1) for item in system.loadings]
-    np.add.at(free_displacement, points.gap, result[:s].T * system.length + np.column_stack(given))
-    gaps, numbers, added = (
-        successive(points.gap),
-        successive(points.number),
-        result[s:].T * (system.length / system.stress),
-    )
+    moved, added = result[:s].T * system.length, result[s:].T * (system.length / system.stress)
+    moved += np.array(given).T
+    gaps, numbers = successive(points.gap), successive(points.number)
     if isinstance(gaps, slice) and isinstance(numbers, slice):
+        free_displacement[gaps] += moved
         compliance[gaps, numbers] += added
     else:
+        np.add.at(free_displacement, points.gap, moved)
         np.add.at(compliance, (points.gap[:, None], points.number), added)
 
 

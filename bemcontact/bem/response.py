@@ -9,6 +9,7 @@ than round-off are all pressures refined, and the condition of A is looked at: t
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -87,10 +88,14 @@ class Response:
         return replace(self, reduced=self.reduced[:, some], last=self.last[:, some])
 
     def rows(self, at: IntArray) -> Array:
-        """Rows (r, c) of X, which are among those that were solved."""
-        place = np.empty(len(self.order), int)
-        place[self.order] = np.arange(len(self.order)) - (len(self.order) - len(self.last))
-        return self.last.T.take(place[at], axis=1).T
+        """Rows (r, c) of X, which are among those that were solved; `IndexError` for others."""
+        return self.last.T.take(self._place[at], axis=1).T
+
+    @cached_property
+    def _place(self) -> IntArray:
+        """Place (size,) of each row of X among those that were solved; beyond the last one for others."""
+        place = np.arange(len(self.order)) - (len(self.order) - len(self.last))
+        return _ordered(np.where(place < 0, len(self.last), place), self.order)
 
     def combined(self, weights: Array) -> Array:
         """X w (size,) for weights (c,) of loads and pressures."""

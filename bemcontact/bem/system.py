@@ -83,14 +83,15 @@ def number_unknowns(mesh: Mesh, values: BoundaryValues) -> Unknowns:
     displacement.T[free.T] = np.arange(free.sum())
     traction = np.full((*mesh.elements.shape, 2), -1)
     count = int(free.sum())
-    smooth = _continues_straight(mesh)
-    for axis in range(2):
-        sought = np.flatnonzero(values.traction_unknown[:, axis])
-        own = np.arange(3 * len(mesh.elements)).reshape(-1, 3)
-        own[smooth, 0] = own[mesh.before[smooth], 2]
-        slots, index = np.unique(own[sought], return_inverse=True)
-        traction[sought, :, axis] = count + index.reshape(-1, 3)
-        count += len(slots)
+    if not values.traction_unknown.any():
+        return Unknowns(displacement=displacement, traction=traction, size=count)
+    slot, smooth = np.arange(3 * len(mesh.elements)).reshape(-1, 3), _continues_straight(mesh)
+    slot[smooth, 0] = slot[mesh.before[smooth], 2]
+    for axis, sought in enumerate(values.traction_unknown.T):
+        used = np.zeros(slot.size, bool)
+        used[slot[sought]] = True
+        traction[sought, :, axis] = count - 1 + used.cumsum()[slot[sought]]
+        count += np.count_nonzero(used)
     return Unknowns(displacement=displacement, traction=traction, size=count)
 
 
@@ -127,8 +128,8 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Syst
 
     wanted = np.ones((2 * m, 2), bool)
     wanted[:m] = ~double
-    at_nodes = np.flatnonzero(wanted.any(axis=1))
-    at_nodes = at_nodes[np.argsort(at_nodes % m, kind="stable")]  # along the boundary, as blocks of rows want it
+    along = np.arange(2 * m).reshape(2, m).T.ravel()  # along the boundary, as blocks of rows want it
+    at_nodes = along[wanted.any(axis=1)[along]]
     split = np.flatnonzero(double.any(axis=1))
     on_split = np.column_stack([before[split], split]).ravel()
     local_split = np.tile([OFFSET, -OFFSET], len(split))
@@ -143,8 +144,8 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Syst
         base=np.concatenate([nodes[at_nodes], base]),
         offset=np.concatenate([np.zeros(len(at_nodes), complex), offset]),
         on_point=np.concatenate([number, number[is_corner], len(at_nodes) + np.arange(2 * len(split))]),
-        on_element=np.concatenate([at_nodes % m, before[corner[is_corner]], on_split]),
-        on_local=np.concatenate([np.where(is_corner, -1.0, 0.0), np.ones(is_corner.sum()), local_split]),
+        on_element=np.concatenate([at_nodes % m, before[at_nodes[is_corner]], on_split]),
+        on_local=np.concatenate([-1.0 * is_corner, np.ones(np.count_nonzero(is_corner)), local_split]),
         corner=np.concatenate([corner, np.full(2 * len(split), -1)]),
     )
     active = np.concatenate([wanted[at_nodes], np.repeat(double[split], 2, axis=0)])
@@ -432,12 +433,16 @@ class System:
         W[self.equations.row[used]] = self.motions.displacement(at)[used]
         return W
 
-    def contact_last(self) -> tuple[IntArray, int]:
-        """All columns (size,), those of displacements at contact points and of the border last; how many these are."""
+    def contact_last(self, like: Sequence["System"] = ()) -> tuple[IntArray, int]:
+        """All columns (size,), those of the border and of displacements that change a gap last; how many these are.
+
+        Also those that change a gap of congruent bodies, which have these equations too.
+        """
         wanted = np.zeros(self.size, bool)
         wanted[self.unknowns.size :] = True
-        at_points = self.unknowns.displacement[self.points.node]
-        wanted[at_points[at_points >= 0]] = True
+        for points in (self.points, *(other.points for other in like)):
+            columns = self.unknowns.displacement[points.node]
+            wanted[columns[(columns >= 0) & (points.change != 0)]] = True
         return np.argsort(wanted, kind="stable"), int(wanted.sum())
 
     def fields(self, z: Array, loading: Loading | None) -> tuple[Array, Array]:

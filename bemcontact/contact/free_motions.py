@@ -152,20 +152,21 @@ class MotionAlgebra:
     @cached_property
     def nearest(self) -> Array:
         """(ℓᵀR)⁻¹ ℓᵀ (k, n), which gives the amplitudes of `amplitudes_of`."""
-        return self._solved(self.equilibrium.T)
+        return self._inverse @ self.equilibrium.T
 
     def amplitudes_of(self, displacement: Array) -> Array:
         """(ℓᵀR)⁻¹ ℓᵀu (k,): the a with which R a is nearest to u (n,) in the least squares of the weights."""
-        return self._solved(self.equilibrium.T @ _rows(displacement, "displacement", len(self.weights)))
+        return self._inverse @ (self.equilibrium.T @ _rows(displacement, "displacement", len(self.weights)))
 
     def balancing(self, load: Array) -> Array:
         """p0 = -R (ℓᵀR)⁻¹ load (n,): the pressure of least weighted square with ℓᵀp = -load, of either sign."""
-        return -self.rigid_motions @ self._solved(_rows(load, "load", self.rigid_motions.shape[1]))
+        return -self.rigid_motions @ (self._inverse @ _rows(load, "load", self.rigid_motions.shape[1]))
 
-    def _solved(self, right: Array) -> Array:
-        """(ℓᵀR)⁻¹ times a right side; `SingularSystemError` if the motions are singular to working precision."""
+    @cached_property
+    def _inverse(self) -> Array:
+        """(ℓᵀR)⁻¹ (k, k); `SingularSystemError` if the motions are singular to working precision."""
         try:
-            return np.asarray(np.linalg.solve(self.equilibrium.T @ self.rigid_motions, right), float)
+            return np.asarray(np.linalg.inv(self.equilibrium.T @ self.rigid_motions), float)
         except np.linalg.LinAlgError:
             raise SingularSystemError(
                 "the free motions are not independent of each other to working precision; give rigid_motions columns "

@@ -5,6 +5,7 @@ motion by its own largest component along the normals. A change of units leaves 
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -41,10 +42,15 @@ class ScaledContact(MotionAlgebra):
 
     def residual(self, pressure: Array, amplitudes: Array) -> float:
         """Largest of |min(p, δ)| and |ℓᵀp + load| / Σ|ℓ|, over the size 1 + max|p| + Σ|a| of the numbers in them."""
-        natural = np.abs(np.minimum(pressure, self.gap(pressure, amplitudes)))
-        balance = np.abs(self.imbalance(pressure)) / np.abs(self.equilibrium).sum(axis=0)
+        natural = np.abs(np.minimum(pressure, self.gap(pressure, amplitudes))).max(initial=0.0)
         size = 1.0 + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum()
-        return float(max(natural.max(initial=0.0), balance.max(initial=0.0)) / size)
+        balance = np.abs(self.equilibrium.T @ pressure + self.motion_load) / self._levers
+        return float(max(natural, balance.max(initial=0.0)) / size)
+
+    @cached_property
+    def _levers(self) -> Array:
+        """Σ|ℓ| (k,): the largest ℓᵀp by pressures up to 1."""
+        return np.abs(self.equilibrium).sum(axis=0)
 
 
 def scale(contact: CondensedContact, scales: ContactScales | None = None) -> ScaledContact:

@@ -43,3 +43,14 @@ def test_no_pressure_and_no_load_is_no_solution_of_a_singular_matrix():
     matrix = np.asfortranarray(np.ones((4, 4)))
     with pytest.raises(SingularSystemError):
         Response.of(LU.of(matrix.copy(order="F")), np.arange(4), 4, np.zeros((4, 1)), 1, lambda x, w: -matrix @ x)
+
+
+def test_rows_that_were_not_solved_are_refused():
+    """Else a gap would get the displacement of another place."""
+    matrix = np.asfortranarray(np.diag([2.0, 4.0, 8.0]))
+    sides, order = np.asfortranarray(np.eye(3)), np.array([1, 2, 0])
+    lu = LU.of(matrix[:, order].copy(order="F"))
+    found = Response.of(lu, order, 2, sides, 1, lambda x, weights: sides @ weights - matrix @ x)
+    assert np.array_equal(found.rows(np.array([0, 2])), [[0.5, 0, 0], [0, 0, 0.125]])
+    with pytest.raises(IndexError):
+        found.rows(np.array([1]))
