@@ -4,11 +4,8 @@ The integrals are those of `kernels` and `influence`, with the same rules, limit
 as products of matrices, for a few points of each block. Here every pair is computed, and goes straight into the columns
 of the system. The machine code releases the lock of the interpreter, so that threads share the work.
 
-Blocks of points have their numbers in one array of rows of constant length STRIDE, which a compiler sees apart:
-
-    0, 1: τ at the middle node, 2...5: parts of the integrands, then for each shape function k
-    6 + k, 9 + k: Re A, Im A, 12 + k, 15 + k: Im S, Re S with B = 2i S, 18 + k: L, 21 + k, 24 + k: Re M, Im M,
-    27...30: Re A, Im A, Im S, Re S of the last node of the element before, which are added to those of the first node
+Blocks of points have their numbers in one array of rows of constant length STRIDE, which a compiler sees apart. It
+computes several points at once where indices are unsigned: a signed one might count from the end of the array.
 """
 
 import math
@@ -21,14 +18,14 @@ import numpy as np
 from bemcontact.arrays import Array, ComplexArray, IntArray
 from bemcontact.bem.flat import FlatColumns, FlatElements, FlatPoints, FlatRules
 from bemcontact.bem.kernels import Factors
-from bemcontact.threads import share_out
+from bemcontact.threads import share_out, workers
 
-STRIDE = 128
-"""Largest block of points."""
-PARTS = 31
-"""Rows of the array of a block."""
+STRIDE = 264
+"""Largest block of points: an odd number of lanes, so that the rows of a lane share no places of a cache."""
 LANES = 8
-"""Points that share a rule near an element."""
+"""Points that share a rule near an element, and that are computed at once."""
+WORTH_A_THREAD = 128
+"""Points from which the blocks of a thread take longer than its start."""
 SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which all points of a block share a rule."""
 SHARED_BY_LANES = 2.5
@@ -39,6 +36,22 @@ STRAIGHT = 1e-16
 """Least c2 over c1 of an element with a second root."""
 MANTISSA, HALF = 0x000FFFFFFFFFFFFF, 0x3FE0000000000000
 """Bits of the mantissa of a double, and of the number 1/2."""
+
+
+def _rows(first: int, count: int) -> tuple[Any, ...]:
+    """Where rows of the array of a block begin."""
+    return tuple(np.uint64(row * STRIDE) for row in range(first, first + count))
+
+
+TAU_X, TAU_Y, SQUARE, COS, SIN, FRACTION = _rows(0, 6)
+"""τ at the middle node, then parts of the integrands."""
+A_RE, A_IM, S_IM, S_RE, LOG, M_RE, M_IM = (_rows(first, 3) for first in range(6, 27, 3))
+"""A, S with B = 2i S, L and M for each shape function."""
+CARRIED = _rows(27, 4)
+"""Re A, Im A, Im S, Re S of the last node of the element before, which are added to those of the first node."""
+PARTS = 31
+"""Rows of the array of a block."""
+UNSIGNED_LANES = np.uint64(LANES)
 
 
 def _machine_code(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -95,59 +108,63 @@ def _regular(
     w: Array, bits: IntArray, first: int, last: int, n: int, xi: Array, shapes: Array,
     c1: complex, c2: complex, with_U: bool,
 ) -> None:  # fmt: skip
-    """Add the sums of a Gauss rule with n points for the points first...last of a block.
+    """Add the sums of a Gauss rule with n points for the points first...last of a block, whole lanes.
 
     The logarithm is computed here, from the exponent and the mantissa, so that it is computed for several points at
     once. It is right to the last digit but one for all numbers that are not subnormal.
     """
     c1x, c1y, c2x, c2y = c1.real, c1.imag, c2.real, c2.imag
-    for g in range(n):
-        x, n0, n1, n2 = xi[g], shapes[g, 0], shapes[g, 1], shapes[g, 2]
-        px, py, dx, dy = x * (c1x + x * c2x), x * (c1y + x * c2y), c1x + 2 * x * c2x, c1y + 2 * x * c2y
-        for i in range(first, last):
-            u, v = w[i] + px, w[STRIDE + i] + py
-            square = u * u + v * v
-            inverse = 1 / square
-            cos, sin = (u * u - v * v) * inverse, 2 * u * v * inverse
-            along, normal = (dx * u + dy * v) * inverse, (dy * u - dx * v) * inverse
-            w[2 * STRIDE + i], w[3 * STRIDE + i], w[4 * STRIDE + i] = square, cos, sin
-            sin, cos = sin * normal, cos * normal
-            w[6 * STRIDE + i] += n0 * along
-            w[7 * STRIDE + i] += n1 * along
-            w[8 * STRIDE + i] += n2 * along
-            w[9 * STRIDE + i] += n0 * normal
-            w[10 * STRIDE + i] += n1 * normal
-            w[11 * STRIDE + i] += n2 * normal
-            w[12 * STRIDE + i] += n0 * sin
-            w[13 * STRIDE + i] += n1 * sin
-            w[14 * STRIDE + i] += n2 * sin
-            w[15 * STRIDE + i] += n0 * cos
-            w[16 * STRIDE + i] += n1 * cos
-            w[17 * STRIDE + i] += n2 * cos
-        if with_U:
-            for i in range(first, last):
-                number = bits[2 * STRIDE + i]
-                bits[5 * STRIDE + i] = (number & MANTISSA) | HALF
-                w[2 * STRIDE + i] = (number >> 52) - 1022
-            for i in range(first, last):
-                mantissa, exponent = w[5 * STRIDE + i], w[2 * STRIDE + i]
-                small = 1.0 if mantissa < 0.7071067811865476 else 0.0
-                mantissa, exponent = mantissa + mantissa * small, exponent - small
-                t = (mantissa - 1) / (mantissa + 1)
-                y = t * t
-                p = 1 / 15 + y * (1 / 17 + y * (1 / 19 + y * (1 / 21)))
-                p = 1 / 7 + y * (1 / 9 + y * (1 / 11 + y * (1 / 13 + y * p)))
-                log = exponent * 0.34657359027997264 + t * (1 + y * (1 / 3 + y * (1 / 5 + y * p)))  # ln|τ|
-                cos, sin = w[3 * STRIDE + i], w[4 * STRIDE + i]
-                w[18 * STRIDE + i] += n0 * log
-                w[19 * STRIDE + i] += n1 * log
-                w[20 * STRIDE + i] += n2 * log
-                w[21 * STRIDE + i] += n0 * cos
-                w[22 * STRIDE + i] += n1 * cos
-                w[23 * STRIDE + i] += n2 * cos
-                w[24 * STRIDE + i] += n0 * sin
-                w[25 * STRIDE + i] += n1 * sin
-                w[26 * STRIDE + i] += n2 * sin
+    for lane in range(np.uint64(first), np.uint64(last), UNSIGNED_LANES):
+        for g in range(n):
+            x, n0, n1, n2 = xi[g], shapes[g, 0], shapes[g, 1], shapes[g, 2]
+            px, py, dx, dy = x * (c1x + x * c2x), x * (c1y + x * c2y), c1x + 2 * x * c2x, c1y + 2 * x * c2y
+            for k in range(UNSIGNED_LANES):
+                i = lane + k
+                u, v = w[TAU_X + i] + px, w[TAU_Y + i] + py
+                square = u * u + v * v
+                inverse = 1 / square
+                cos, sin = (u * u - v * v) * inverse, 2 * u * v * inverse
+                along, normal = (dx * u + dy * v) * inverse, (dy * u - dx * v) * inverse
+                w[SQUARE + i], w[COS + i], w[SIN + i] = square, cos, sin
+                sin, cos = sin * normal, cos * normal
+                w[A_RE[0] + i] += n0 * along
+                w[A_RE[1] + i] += n1 * along
+                w[A_RE[2] + i] += n2 * along
+                w[A_IM[0] + i] += n0 * normal
+                w[A_IM[1] + i] += n1 * normal
+                w[A_IM[2] + i] += n2 * normal
+                w[S_IM[0] + i] += n0 * sin
+                w[S_IM[1] + i] += n1 * sin
+                w[S_IM[2] + i] += n2 * sin
+                w[S_RE[0] + i] += n0 * cos
+                w[S_RE[1] + i] += n1 * cos
+                w[S_RE[2] + i] += n2 * cos
+            if with_U:
+                for k in range(UNSIGNED_LANES):
+                    i = lane + k
+                    number = bits[SQUARE + i]
+                    bits[FRACTION + i] = (number & MANTISSA) | HALF
+                    w[SQUARE + i] = (number >> 52) - 1022
+                for k in range(UNSIGNED_LANES):
+                    i = lane + k
+                    mantissa, exponent = w[FRACTION + i], w[SQUARE + i]
+                    small = 1.0 if mantissa < 0.7071067811865476 else 0.0
+                    mantissa, exponent = mantissa + mantissa * small, exponent - small
+                    t = (mantissa - 1) / (mantissa + 1)
+                    y = t * t
+                    p = 1 / 15 + y * (1 / 17 + y * (1 / 19 + y * (1 / 21)))
+                    p = 1 / 7 + y * (1 / 9 + y * (1 / 11 + y * (1 / 13 + y * p)))
+                    log = exponent * 0.34657359027997264 + t * (1 + y * (1 / 3 + y * (1 / 5 + y * p)))  # ln|τ|
+                    cos, sin = w[COS + i], w[SIN + i]
+                    w[LOG[0] + i] += n0 * log
+                    w[LOG[1] + i] += n1 * log
+                    w[LOG[2] + i] += n2 * log
+                    w[M_RE[0] + i] += n0 * cos
+                    w[M_RE[1] + i] += n1 * cos
+                    w[M_RE[2] + i] += n2 * cos
+                    w[M_IM[0] + i] += n0 * sin
+                    w[M_IM[1] + i] += n1 * sin
+                    w[M_IM[2] + i] += n2 * sin
 
 
 @_machine_code
@@ -194,13 +211,14 @@ def _split_off(
     l2 += (last * (1 + r + r * r) / 3 - first * (1 - r + r * r) / 3 - (2 / 3 + 2 * r * r) / 3).real
     b0, b1, b2 = 0.5 * h0 - h1 - turn0, 2 * h1, -0.5 * h0 - h1 + turn2
     m0, m1, m2 = (h2 - h1) / 2, h0 - h2, (h2 + h1) / 2
-    w[6 * STRIDE + i], w[7 * STRIDE + i], w[8 * STRIDE + i] = a0.real, a1.real, a2.real
-    w[9 * STRIDE + i], w[10 * STRIDE + i], w[11 * STRIDE + i] = a0.imag, a1.imag, a2.imag
-    w[12 * STRIDE + i], w[13 * STRIDE + i], w[14 * STRIDE + i] = -b0.real / 2, -b1.real / 2, -b2.real / 2
-    w[15 * STRIDE + i], w[16 * STRIDE + i], w[17 * STRIDE + i] = b0.imag / 2, b1.imag / 2, b2.imag / 2
-    w[18 * STRIDE + i], w[19 * STRIDE + i], w[20 * STRIDE + i] = (l2 - l1) / 2, l0 - l2, (l2 + l1) / 2
-    w[21 * STRIDE + i], w[22 * STRIDE + i], w[23 * STRIDE + i] = m0.real, m1.real, m2.real
-    w[24 * STRIDE + i], w[25 * STRIDE + i], w[26 * STRIDE + i] = m0.imag, m1.imag, m2.imag
+    j = np.uint64(i)
+    w[A_RE[0] + j], w[A_RE[1] + j], w[A_RE[2] + j] = a0.real, a1.real, a2.real
+    w[A_IM[0] + j], w[A_IM[1] + j], w[A_IM[2] + j] = a0.imag, a1.imag, a2.imag
+    w[S_IM[0] + j], w[S_IM[1] + j], w[S_IM[2] + j] = -b0.real / 2, -b1.real / 2, -b2.real / 2
+    w[S_RE[0] + j], w[S_RE[1] + j], w[S_RE[2] + j] = b0.imag / 2, b1.imag / 2, b2.imag / 2
+    w[LOG[0] + j], w[LOG[1] + j], w[LOG[2] + j] = (l2 - l1) / 2, l0 - l2, (l2 + l1) / 2
+    w[M_RE[0] + j], w[M_RE[1] + j], w[M_RE[2] + j] = m0.real, m1.real, m2.real
+    w[M_IM[0] + j], w[M_IM[1] + j], w[M_IM[2] + j] = m0.imag, m1.imag, m2.imag
 
 
 @_machine_code
@@ -264,7 +282,7 @@ def _integrate(
         j = first + min(i, R - 1)
         tau = (mid - points.base[j]) - points.offset[j]
         w[i], w[STRIDE + i] = tau.real, tau.imag
-    w[6 * STRIDE : (27 if with_U else 18) * STRIDE] = 0
+    w[A_RE[0] : CARRIED[0] if with_U else LOG[0]] = 0
     rho = _least_rho(mid, c1, c2, middle[0], radius[0])
     if rho > SHARED_RULE_RHO:
         tier = _tier(rho, rules.rho if with_U else rules.rho_of_t)
@@ -315,7 +333,7 @@ def _add(
     target: Array, w: Array, a: int, factor_a: float, b: int, factor_b: float, c: int, factor_c: float, constant: float
 ) -> None:
     """Add factors times three rows of w, and a constant, to one number for each point."""
-    for i in range(len(target)):
+    for i in range(np.uint64(len(target))):
         target[i] += factor_a * w[a + i] + factor_b * w[b + i] + factor_c * w[c + i] + constant
 
 
@@ -328,7 +346,7 @@ def _add_to_rows(
     if first >= 0:
         _add(line[first : first + len(rows)], w, a, factor_a, b, factor_b, c, factor_c, constant)
         return
-    for i in range(len(rows)):
+    for i in range(np.uint64(len(rows))):
         if rows[i] >= 0:
             line[rows[i]] += factor_a * w[a + i] + factor_b * w[b + i] + factor_c * w[c + i] + constant
 
@@ -339,7 +357,7 @@ def _add_node(
     node: int, columns: FlatColumns, factor: Factors,
 ) -> None:  # fmt: skip
     """Add F of local node k to the columns of the node, and to the sums where its displacement is known."""
-    along, normal, sin, cos = (6 + k) * STRIDE, (9 + k) * STRIDE, (12 + k) * STRIDE, (15 + k) * STRIDE
+    along, normal, sin, cos = A_RE[k], A_IM[k], S_IM[k], S_RE[k]
     for axis in range(2):
         if axis == 0:
             x, fx, cx, y, fy, cy = normal, factor.normal, cos, along, factor.tangential, sin
@@ -364,7 +382,7 @@ def _add_tractions(
     columns: FlatColumns, factor: Factors, share: float,
 ) -> None:  # fmt: skip
     """Add G times traction of local node k to the columns that it belongs to, and to the sums where it is known."""
-    log, cos, sin, t = (18 + k) * STRIDE, (21 + k) * STRIDE, (24 + k) * STRIDE, factor.turn
+    log, cos, sin, t = LOG[k], M_RE[k], M_IM[k], factor.turn
     for at in range(columns.start[3 * e + k], columns.start[3 * e + k + 1]):
         line, x, y = out[columns.column[at]], columns.x[at], columns.y[at]
         _add_to_rows(line, rows_x, first_x, w, log, -factor.log * x, cos, t * x, sin, t * y, t * share * x)
@@ -419,14 +437,13 @@ def add_rows(
             with_U = columns.loaded[e] != 0
             _integrate(w, bits, tiers, first, R, middle, radius, points, elements, e, with_U, rules)
             carry = e + 1 < m and elements.node[e + 1, 0] == elements.node[e, 2]
-            for part in range(4):
-                before, start, end = (27 + part) * STRIDE, (6 + 3 * part) * STRIDE, (8 + 3 * part) * STRIDE
+            for part, (start, _, end) in enumerate((A_RE, A_IM, S_IM, S_RE)):
                 if carried:
-                    for i in range(R):
-                        w[start + i] += w[before + i]
+                    for i in range(np.uint64(R)):
+                        w[start + i] += w[CARRIED[part] + i]
                 if carry:
-                    for i in range(R):
-                        w[before + i] = w[end + i]
+                    for i in range(np.uint64(R)):
+                        w[CARRIED[part] + i] = w[end + i]
             carried = carry
             for k in range(3):
                 if k < 2 or not carry:
@@ -454,8 +471,9 @@ def add_rows(
 
 
 def block_size(count: int) -> int:
-    """Points of a block of so many in all: small ones share more rules, large ones write longer pieces of columns."""
-    return STRIDE // 2 if STRIDE < count < 8 * STRIDE else STRIDE
+    """Points of each block of so many in all: whole lanes, in as few blocks as can be, but one for each thread."""
+    blocks = max(math.ceil(count / STRIDE), min(workers(), count // WORTH_A_THREAD))
+    return LANES * math.ceil(count / (LANES * blocks))
 
 
 def add_all(

@@ -94,8 +94,9 @@ class Response:
     @cached_property
     def _place(self) -> IntArray:
         """Place (size,) of each row of X among those that were solved; beyond the last one for others."""
-        place = np.arange(len(self.order)) - (len(self.order) - len(self.last))
-        return _ordered(np.where(place < 0, len(self.last), place), self.order)
+        place, unsolved = np.full(len(self.order), len(self.last)), len(self.order) - len(self.last)
+        place[self.order[unsolved:]] = np.arange(len(self.last))
+        return place
 
     def combined(self, weights: Array) -> Array:
         """X w (size,) for weights (c,) of loads and pressures."""

@@ -91,7 +91,7 @@ def number_unknowns(mesh: Mesh, values: BoundaryValues) -> Unknowns:
         used = np.zeros(slot.size, bool)
         used[slot[sought]] = True
         traction[sought, :, axis] = count - 1 + used.cumsum()[slot[sought]]
-        count += np.count_nonzero(used)
+        count += int(np.count_nonzero(used))
     return Unknowns(displacement=displacement, traction=traction, size=count)
 
 
@@ -126,10 +126,10 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Syst
     ends, starts = unknowns.traction[before, 2], unknowns.traction[element, 0]
     double = (ends >= 0) & (starts >= 0) & (ends != starts)  # (m, 2), at the start node of each element
 
-    wanted = np.ones((2 * m, 2), bool)
+    wanted: BoolArray = np.ones((2 * m, 2), bool)
     wanted[:m] = ~double
     along = np.arange(2 * m).reshape(2, m).T.ravel()  # along the boundary, as blocks of rows want it
-    at_nodes = along[wanted.any(axis=1)[along]]
+    at_nodes = along[np.any(wanted, axis=1)[along]]
     split = np.flatnonzero(double.any(axis=1))
     on_split = np.column_stack([before[split], split]).ravel()
     local_split = np.tile([OFFSET, -OFFSET], len(split))
@@ -145,7 +145,7 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Syst
         offset=np.concatenate([np.zeros(len(at_nodes), complex), offset]),
         on_point=np.concatenate([number, number[is_corner], len(at_nodes) + np.arange(2 * len(split))]),
         on_element=np.concatenate([at_nodes % m, before[at_nodes[is_corner]], on_split]),
-        on_local=np.concatenate([-1.0 * is_corner, np.ones(np.count_nonzero(is_corner)), local_split]),
+        on_local=np.concatenate([np.where(is_corner, -1.0, 0.0), np.ones(is_corner.sum()), local_split]),
         corner=np.concatenate([corner, np.full(2 * len(split), -1)]),
     )
     active = np.concatenate([wanted[at_nodes], np.repeat(double[split], 2, axis=0)])
