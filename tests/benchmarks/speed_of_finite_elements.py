@@ -12,6 +12,9 @@ from speed_page import Section, Settings, Table, Target
 from timing import in_turns
 
 import bemcontact
+from bemcontact.bem.condense import condense
+from bemcontact.bem.discretization import body_of
+from bemcontact.formulations.complementarity import solve as solve_directly
 
 LEVELS = (0.01, 0.003, 0.002, 0.0015)
 """Errors at which times are compared."""
@@ -31,8 +34,11 @@ BODIES = {
     "cylinder": (finite_elements.CYLINDER, boundary_elements.cylinder),
     "block": (finite_elements.BLOCK, boundary_elements.block),
 }
+EQUAL_WORK = ", equal work"
+"""What is added to families of which only that is timed which is timed of finite elements."""
 PAIRS = {
     "stated, uniform": ("triangles, uniform", "elements, uniform"),
+    "stated, uniform, equal work": ("triangles, uniform", f"elements, uniform{EQUAL_WORK}"),
     "stated, end of contact known": ("triangles, graded", "elements, graded"),
     "end of contact found": ("triangles, two passes", "mesh found"),
 }
@@ -57,6 +63,8 @@ condensation and contact are timed, not the making of the mesh.
 Of this program the whole `bemcontact.solve` is timed with its checks, for a problem that is read.
 
 - *uniform*: elements of one size wherever contact may be;
+- *equal work*: of this program too, set-up, factorization, condensation and contact alone, not the making of the mesh,
+  and no checks;
 - *graded*: the end of contact is known, elements get smaller towards it, and two meet there;
 - *two passes*: finite elements on a uniform mesh find the end, and the graded mesh follows;
 - *mesh found*: this program searches for its mesh, the search included.
@@ -127,6 +135,7 @@ class Comparison:
             listed.append(self._by_finite_elements("triangles, two passes", size, [first, second]))
         for count in UNIFORM_ELEMENTS[few][some]:
             listed.append(self._by_boundary_elements("elements, uniform", count, self.state(count)))
+            listed.append(self._by_equal_work(listed[-1], self.state(count)))
         for count in GRADED_ELEMENTS[some]:
             listed.append(self._by_boundary_elements("elements, graded", count, self.state(count, end)))
         anew = self.state(8)
@@ -149,6 +158,14 @@ class Comparison:
             return result.degrees_of_freedom, error, error
 
         return Attempt(family=family, setting=setting, run=lambda: bemcontact.solve(problem), judge=judge)
+
+    def _by_equal_work(self, whole: Attempt, problem: bemcontact.Problem) -> Attempt:
+        """The same mesh, of which only condensation and contact are timed."""
+        body = body_of(problem)
+        return Attempt(
+            family=f"{whole.family}{EQUAL_WORK}", setting=whole.setting,
+            run=lambda: solve_directly(condense(body).contact), judge=lambda _: whole.judge(whole.run()),
+        )  # fmt: skip
 
     def measured(self, quick: bool) -> list[Point]:
         """Judge and time all of them, in turns."""
@@ -199,7 +216,7 @@ def words(point: Point | None) -> str:
 
 def tables(name: str, result: Comparison) -> list[Table]:
     """Equal errors, ratios, and all meshes."""
-    points, families = result.points, [family for pair in PAIRS.values() for family in pair]
+    points, families = result.points, [*dict.fromkeys(family for pair in PAIRS.values() for family in pair)]
     equal = [[f"{100 * level:g} %", *(words(reached(points, item, level)) for item in families)] for level in LEVELS]
     ratios = [[f"{100 * level:g} %", *(ratio(points, pair, level) for pair in PAIRS.values())] for level in LEVELS]
     plain = {f"{title}; without smoothing": pair for title, pair in PAIRS.items()}
