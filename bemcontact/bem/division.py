@@ -119,7 +119,9 @@ def feet(item: Matched, edge: Edge, at: Array) -> Array:
 
 def _thirds(ends: Array) -> Array:
     """Start, middle and end (e, 3) of elements with these ends (e + 1,)."""
-    return np.column_stack([ends[:-1], (ends[:-1] + ends[1:]) / 2, ends[1:]])
+    thirds = np.empty((len(ends) - 1, 3))
+    thirds[:, 0], thirds[:, 1], thirds[:, 2] = ends[:-1], (ends[:-1] + ends[1:]) / 2, ends[1:]
+    return thirds
 
 
 def _with_ends(ends: Array, places: Sequence[float], edge: Edge) -> Array:
