@@ -6,7 +6,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
+from bemcontact.arrays import Array, BoolArray, IntArray, ObjectArray, magnitudes
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ALIKE, SMOOTH, ContactPoints, HeldNodes
 from bemcontact.bem.mesh import Mesh, runs
@@ -245,12 +245,11 @@ def _goes_on(
 
     `on_surface` (2,) is that of both ends.
     """
-    if not on_surface.any():
-        return False, False
     first, after = elements[0], mesh.elements[elements[-1], 2]  # an element has the number of its start node
-    here, beyond = np.array([first, after]), np.array([mesh.before[first], after])
-    smooth = abs(mesh.turns[here]) < SMOOTH
-    start, end = (smooth & on_surface & _held_along(normals[ENDS], values.traction_unknown[beyond])).tolist()
+    goes_on = on_surface & _held_along(normals[ENDS], values.traction_unknown[[mesh.before[first], after]])
+    if not goes_on.any():
+        return False, False
+    start, end = (goes_on & (abs(mesh.turns[[first, after]]) < SMOOTH)).tolist()
     return start, end
 
 
@@ -290,18 +289,21 @@ def _joined(
     node, normals, gap, opposite = (
         np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("nodes", "normals", "gap", "opposite")
     )
-    tool = [piece.tool for piece, size in zip(pieces, sizes, strict=True) for _ in range(size)]
-    sides = np.stack([tied[node], np.where(opposite >= 0, tied[opposite], -1)], axis=1)
+    run = np.arange(len(pieces)).repeat(sizes)
+    tool = np.array([piece.tool for piece in pieces], object)[run]
+    sides = tied[node], np.where(opposite >= 0, tied[opposite], -1)
     first_alike = _first_alike(mesh, sides, normals, gap, tool)
     jumps = np.zeros(len(node), bool)
     if (kinds > 0).any():  # else all bodies are alike
-        of_sides = np.stack([kinds[node], np.where(opposite >= 0, kinds[opposite], -1)], axis=1)
-        jumps = _jumps(sides, of_sides, normals, tool)
+        of_sides = kinds[node], np.where(opposite >= 0, kinds[opposite], -1)
+        jumps = _jumps(np.stack(sides, axis=1), np.stack(of_sides, axis=1), normals, tool)
         jumps |= (first_alike >= 0) & jumps[first_alike]
         first_alike[jumps] = -1
-    own = first_alike == np.arange(len(node))
-    sense = np.where((normals * normals[first_alike]).sum(axis=1) < 0, -1.0, 1.0)
-    number = np.where(first_alike < 0, -1, (own.cumsum() - 1)[first_alike])
+    alone = first_alike == np.arange(len(node))
+    own, number, sense = np.flatnonzero(alone), alone.cumsum() - 1, np.ones(len(node))
+    if len(own) < len(node):
+        sense[(normals * normals[first_alike]).sum(axis=1) < 0] = -1.0
+        number = np.where(first_alike < 0, -1, number[first_alike])
     elements, points, senses = [], [], []
     held_arc = np.array([piece.held_arc for piece in pieces])
     held_points = np.array([piece.held_points for piece in pieces])
@@ -328,14 +330,15 @@ def _joined(
         senses.append(signs)
     shares = 3 * np.concatenate(elements)[:, None] + np.arange(3)
     share, point = shares.ravel(), np.concatenate(points).ravel()
-    once = _once(share * (len(node) + 1) + point + 1)  # zones that share an edge and a face share its points
-    once = once[point[once] >= 0]
+    once = np.flatnonzero(point >= 0)
+    if len(pieces) > 1:  # zones that share an edge and a face share its points
+        once = once[_once(share[once] * len(node) + point[once])]
     element, local = np.divmod(share[once], 3)
     return ContactPoints(
         mesh=mesh,
         node=node[own],
-        zone=np.array([piece.zone for piece in pieces]).repeat(sizes)[own],
-        run=np.arange(len(pieces)).repeat(sizes)[own],
+        zone=np.array([piece.zone for piece in pieces])[run[own]],
+        run=run[own],
         arc_position=np.concatenate([piece.arc for piece in pieces])[own],
         run_length=np.array([piece.length for piece in pieces]),
         normals=normals[own],
@@ -364,20 +367,22 @@ def _once(code: IntArray) -> IntArray:
     return np.flatnonzero(first)
 
 
-def _first_alike(mesh: Mesh, sides: IntArray, normals: Array, gap: Array, tool: Sequence[str | None]) -> IntArray:
+def _first_alike(
+    mesh: Mesh, sides: tuple[IntArray, IntArray], normals: Array, gap: Array, tool: ObjectArray
+) -> IntArray:
     """The first point (n,) with the same nodes, normal, gap and tool, which contacts that meet on one surface share.
 
-    Nodes (n, 2) on both sides are one if they move together. Two contacts may state the sides the other way round. It
+    Nodes (n,) on both sides are one if they move together. Two contacts may state the sides the other way round. It
     is -1 for a point that another one with a smaller gap keeps from touching.
     """
-    first, low, high = np.arange(len(sides)), sides.min(axis=1), sides.max(axis=1)
-    code = low * len(mesh.nodes) + high
+    (near, far), first = sides, np.arange(len(gap))
+    code = np.minimum(near, far) * len(mesh.nodes) + np.maximum(near, far)
     if len(_once(code)) == len(code):
         return first
     _, place = np.unique(code, return_inverse=True)
     for j in np.flatnonzero(np.bincount(place)[place] > 1).tolist():
         same = [i for i in np.flatnonzero(place == place[j]).tolist() if tool[i] == tool[j]]
-        turned = {i: 1.0 if sides[i, 0] == sides[j, 0] else -1.0 for i in same}
+        turned = {i: 1.0 if near[i] == near[j] else -1.0 for i in same}
         same = [i for i in same if np.hypot(*(normals[i] - turned[i] * normals[j])) <= ALIKE]
         least = min(gap[i] for i in same)
         if gap[j] <= least + ALIKE * mesh.size:
@@ -387,7 +392,7 @@ def _first_alike(mesh: Mesh, sides: IntArray, normals: Array, gap: Array, tool: 
     return first
 
 
-def _jumps(sides: IntArray, kinds: IntArray, normals: Array, tool: Sequence[str | None]) -> BoolArray:
+def _jumps(sides: IntArray, kinds: IntArray, normals: Array, tool: ObjectArray) -> BoolArray:
     """Whether points (n,) move with others where a body on one of both sides (n, 2) is of another kind (n, 2).
 
     Common normals with bodies of other moduli are not quite the same.

@@ -215,9 +215,9 @@ class Loading:
 
     def true_work(self, mesh: Mesh, motions: FreeMotions) -> Array:
         """Work (k,) in rigid motions [p L] on the exact curves, to round-off: it does not depend on the mesh."""
-        each = enumerate(zip(self.true_forces, self.true_moments.tolist(), strict=True))
-        parts = (motions.of_body(i).work_of(force, moment, about=mesh.center) for i, (force, moment) in each)
-        return np.sum([*parts], axis=0)
+        (x, y), (force_x, force_y) = (motions.centers[: len(self.true_forces)] - mesh.center).T, self.true_forces.T
+        moments = (self.true_moments - (x * force_y - y * force_x)) / motions.radius  # about the centers
+        return motions.of_bodies @ np.stack([force_x, force_y, moments], axis=1).ravel()
 
     def magnitude(self, mesh: Mesh) -> float:
         """Sum of the magnitudes of all loads [p L]."""
