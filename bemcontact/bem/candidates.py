@@ -16,7 +16,7 @@ from bemcontact.problems.body_surface import AnySurface, BodySurface
 from bemcontact.problems.curves import cross
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import DeflectedContour
-from bemcontact.problems.surface_lines import Closest, SmoothSurface
+from bemcontact.problems.surface_lines import Closest, Faces, SmoothSurface
 from bemcontact.problems.visibility import turned_to
 
 ENDS = np.array([0, -1])
@@ -45,7 +45,7 @@ def contact_points(
     zones, in_zones, given = problem.zones, outline.in_zones, values.displacement_given
     choice, tied, kinds = _in_several(mesh, in_zones), _tied(problem, mesh), _kinds(problem, mesh)
     for number, (name, zone) in enumerate(zones.items()):
-        in_zone, faces = in_zones[number], _faces(outline, zone.surface, deflections.get(name))
+        in_zone, faces = in_zones[number], _faces(outline, zone.surface, in_zones[number], deflections.get(name))
         other = isinstance(zone.surface, BodySurface) and zone.surface.elastic
         across, divides = _across(mesh, mesh.facing.get(name)), faces.differs[:, 0]
         if name in mesh.facing:
@@ -188,15 +188,24 @@ class _NodeFaces(NamedTuple):
         return nodes
 
 
-def _faces(outline: Outline, surface: AnySurface, deflection: Array | None) -> _NodeFaces:
-    """Faces of a surface at all nodes, or of the deflected contour."""
+def _faces(outline: Outline, surface: AnySurface, in_zone: BoolArray, deflection: Array | None) -> _NodeFaces:
+    """Faces of a surface at all nodes, or of the deflected contour.
+
+    Those of another elastic body, which take long, are found at nodes of elements (m,) in the zone alone.
+    """
     mesh = outline.mesh
     if isinstance(surface, DeflectedContour):
         assert deflection is not None
         return _NodeFaces.of_one(surface.behind(deflection))
     if isinstance(surface, SmoothSurface):
         return _NodeFaces.of_one(surface.held(mesh.nodes))
-    held = surface.faces(mesh.nodes, *outline.sides)
+    if isinstance(surface, BodySurface) and surface.elastic:
+        own, (inward, reach) = mesh.nodes_of(np.flatnonzero(in_zone)), outline.sides
+        held = Faces(*(np.zeros((len(mesh.nodes), *shape)) for shape in ((3,), (3, 2), (3, 2))))
+        for part, known in zip(held, surface.faces(mesh.nodes[own], inward[own], reach[own]), strict=True):
+            part[own] = known
+    else:
+        held = surface.faces(mesh.nodes, *outline.sides)
     other = magnitudes(held.normals - held.normals[:, [2, 0, 0]]) > ALIKE
     return _NodeFaces(*held, other | (abs(held.gap - held.gap[:, [2, 0, 0]]) > ALIKE * mesh.size))
 

@@ -357,6 +357,11 @@ def cross(one: Array, other: Array) -> Array:
     return one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
 
 
+def inner(one: Array, other: Array) -> Array:
+    """Inner product of vectors (..., 2)."""
+    return one[..., 0] * other[..., 0] + one[..., 1] * other[..., 1]
+
+
 def unit_vector(angle: float) -> Pair:
     """(cos, sin) of an angle in degrees, exact at multiples of 90 degrees."""
     quarter, rest = divmod(angle, 90.0)
