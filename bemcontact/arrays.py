@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 ComplexArray = NDArray[np.complex128]
+ObjectArray = NDArray[np.object_]
 
 BLOCK = 32
 """Rows of which products are held at a time, so that they stay in the cache."""
@@ -38,9 +39,15 @@ def real_array(value: Any, what: str, shape: Dimensions | None = None, *, finite
             raise ProblemError(f"{what} must contain real numbers; found {_described(value, array)}")
     _ensure_shape(array, what, shape)
     array = np.asarray(array, dtype=float)
-    if finite and array.size and not (np.abs(array) <= LARGEST_NUMBER).all():  # false also for what is not a number
+    if finite and not _is_moderate(array):
         _complain(array, what)
     return array
+
+
+def _is_moderate(array: Array) -> bool:
+    """Whether all entries are numbers and not too large; the square of nearly all arrays without others tells."""
+    squared = np.vdot(array, array)
+    return bool(squared <= LARGEST_NUMBER**2 or (np.abs(array) <= LARGEST_NUMBER).all())  # not what is not a number
 
 
 def whole_array(value: Any, what: str, shape: Dimensions | None = None) -> IntArray:

@@ -119,11 +119,13 @@ class Body:
 
         It is that on the exact curves: the mesh does not decide whether large loads balance.
         """
-        on_body = np.column_stack([loading.true_work(self.mesh, motions) for loading in self.loadings])
-        work = on_body + motions.tools.T @ self.tools.force
-        unit = np.eye(len(self.loadings))
-        total = [self.pinned.total(alone, self.tools.force * alone) for alone in unit]
-        return np.where(abs(work) > BALANCED * np.array(total), work, 0.0)
+        work = np.stack([loading.true_work(self.mesh, motions) for loading in self.loadings], axis=1)
+        total = self.pinned.magnitude
+        if self.tools.names:
+            work += motions.tools.T @ self.tools.force
+            x, y, moment = np.moveaxis(self.tools.force.reshape(-1, 3, len(self.loadings)), 1, 0)
+            total = total + (np.hypot(x, y) + abs(moment) / self.pinned.length).sum(axis=0)
+        return np.where(abs(work) > BALANCED * total, work, 0.0)
 
     @cached_property
     def spins(self) -> FreeMotions:
@@ -134,7 +136,7 @@ class Body:
     @cached_property
     def pinned_motions(self) -> FreeMotions:
         """The motions that nothing determines: those that change no gap, and spins."""
-        if not len(self.spins):
+        if not (self.problem.spin_centers and len(self.spins)):
             return self.unseen
         return replace(self.unseen, coefficients=np.vstack([self.unseen.coefficients, self.spins.coefficients]))
 
@@ -145,7 +147,9 @@ class Body:
         return Pinned(
             motions=tuple(f"{motions.who(j)} against the {motions.way(j)}" for j in range(len(motions))),
             turns=np.array([motions.turns(j) for j in range(len(motions))], bool),
-            load=np.column_stack([item.true_work(self.mesh, motions) for item in self.loadings]),
+            load=np.stack([item.true_work(self.mesh, motions) for item in self.loadings], axis=1)
+            if len(motions)
+            else np.zeros((0, len(self.loadings))),
             tools=motions.tools,
             magnitude=np.array([item.magnitude(self.mesh) for item in self.loadings]),
             length=motions.radius,
@@ -156,19 +160,11 @@ class Body:
         """Terms (3 t, 1 + c) of the forces on the tools, a column for each loading."""
         return self.tools.force * self.factors
 
-    def normal_motion(self, motions: FreeMotions) -> Array:
-        """R (n, k): change of the gaps in free motions."""
-        changes = self.tools.motions @ motions.tools
-        for number, part in enumerate(self.mesh.parts):
-            pressures = self.points.unit_pressures[number]
-            changes += motions.of_body(number).gap_changes(pressures, part.mesh, len(self.points))
-        return changes
-
     @cached_property
     def held_gaps(self) -> Array:
         """Gap (h,) [L] at each of `ContactPoints.held` under the loads that act; infinite beside a free tool."""
         held, mesh = self.points.held, self.mesh
-        if held is None:
+        if held is None or not len(held.node):
             return np.zeros(0)
         position = self.tools.position @ self.factors
         places = mesh.nodes[held.node] - steps_of_surfaces(self.problem)[held.zone]
@@ -184,7 +180,7 @@ class Body:
     @cached_property
     def seen_motion(self) -> Array:
         """R (n, k): change of the gaps in the seen motions, without round-off."""
-        R = self.normal_motion(self.seen)
+        R = self.seen.gap_changes
         return np.where(abs(R) > ROUND_OFF, R, 0.0)
 
     @cached_property

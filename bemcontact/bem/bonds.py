@@ -214,8 +214,8 @@ def eliminate(
 
 def split_motions(held: Array, apart: Array, least: float) -> tuple[Array, Array]:
     """Motions (k, …) that leave bonded bodies together, and those that do not, from what each changes there (b, k)."""
-    if not len(apart) or not len(held):
-        return held, held[:0]
+    if not len(held):
+        return held, held
     values, vectors = np.linalg.svd(np.vstack([apart, np.zeros((len(held), len(held)))]), full_matrices=False)[1:]
     together = values <= least * np.sqrt(len(apart))
     return vectors[together] @ held, vectors[~together] @ held

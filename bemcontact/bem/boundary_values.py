@@ -99,8 +99,8 @@ def boundary_values(problem: Problem, conditions: Mapping[str, Condition], mesh:
         if name not in conditions:
             continue
         condition, elements = conditions[name], np.flatnonzero(mesh.edge == index)
-        nodes = np.unique(mesh.elements[elements])
         for axis, field in _given(condition.displacement):
+            nodes = mesh.nodes_of(elements)
             value = field.at(mesh.nodes[nodes])
             taken = values.displacement_given[nodes, axis]
             if taken.any():
@@ -179,7 +179,7 @@ def _largest_displacement(conditions: Mapping[str, Condition], mesh: Mesh) -> fl
     """Largest prescribed displacement on the mesh [L]."""
     largest = 0.0
     for name, condition in conditions.items():
-        nodes = np.unique(mesh.elements[mesh.edge == mesh.edge_names.index(name)])
+        nodes = mesh.nodes_of(np.flatnonzero(mesh.edge == mesh.edge_names.index(name)))
         for _, field in _given(condition.displacement):
             largest = max(largest, float(abs(field.at(mesh.nodes[nodes])).max()))
     return largest

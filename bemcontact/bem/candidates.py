@@ -1,12 +1,12 @@
 """The search for contact points: nodes of the zones that may touch, piece by piece along the boundary."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
-from typing import NamedTuple
+from itertools import accumulate, pairwise
+from typing import NamedTuple, Self
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
+from bemcontact.arrays import Array, BoolArray, IntArray, ObjectArray, magnitudes
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ALIKE, SMOOTH, ContactPoints, HeldNodes
 from bemcontact.bem.mesh import Mesh, runs
@@ -16,9 +16,11 @@ from bemcontact.problems.body_surface import AnySurface, BodySurface
 from bemcontact.problems.curves import cross
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import DeflectedContour
-from bemcontact.problems.surface_lines import Faces
+from bemcontact.problems.surface_lines import Closest, Faces, SmoothSurface
 from bemcontact.problems.visibility import turned_to
 
+ENDS = np.array([0, -1])
+"""Indices of both ends of a piece."""
 PARALLEL = 1e-9
 """Sine of the angle below which the rigid normal lies along a prescribed axis."""
 
@@ -40,54 +42,69 @@ def contact_points(
     problem, mesh, halves = outline.problem, outline.mesh, outline.mesh.halves
     tool_of = {zone: tool for tool, stated in problem.tools.items() for zone in stated.zones}
     pieces: list[_Piece] = []
-    in_zones, has = outline.in_zones, np.zeros((len(problem.zones), len(mesh.nodes)), bool)
-    of_zone, element = np.nonzero(in_zones)
-    has[of_zone[:, None], mesh.elements[element]] = True
-    choice = has.sum(axis=0) > 1
-    middles, tied, kinds = mesh.elements[:, 1], _tied(problem, mesh), _kinds(problem, mesh)
-    for number, (name, zone) in enumerate(problem.zones.items()):
-        in_zone, faces = in_zones[number], _faces(outline, zone.surface, deflections.get(name))
+    zones, in_zones, given = problem.zones, outline.in_zones, values.displacement_given
+    choice, tied, kinds = _in_several(mesh, in_zones), _tied(problem, mesh), _kinds(problem, mesh)
+    for number, (name, zone) in enumerate(zones.items()):
+        in_zone, faces = in_zones[number], _faces(outline, zone.surface, in_zones[number], deflections.get(name))
         other = isinstance(zone.surface, BodySurface) and zone.surface.elastic
-        across = _across(mesh, mesh.facing.get(name))
-        apart = across.min(axis=0) >= 0
-        one, two = across[:, apart]
-        apart[apart] = (tied[one] != tied[two]) | (kinds[one] != kinds[two])
-        for elements, closed in _between(mesh, runs(mesh, in_zone), faces.differs[:, 0] | apart):
+        across, divides = _across(mesh, mesh.facing.get(name)), faces.differs[:, 0]
+        if name in mesh.facing:
+            divides = divides | _parted(across, tied, kinds)
+        for elements, closed in _between(mesh, runs(mesh, in_zone), divides):
             nodes, arc = _nodes_along(mesh, halves, elements, closed=closed)
             gap, normals, lies = faces.along(nodes, closed=closed)
             opposite = _along(across, nodes, closed=closed)
-            bonded = (opposite >= 0) & (tied[nodes] == tied[opposite])
-            given = values.displacement_given
-            across_held = (opposite < 0) | _held_along(normals, given[opposite])  # else the other body comes up to it
-            loose = ~(_held_along(normals, given[nodes]) & across_held) & ~bonded
-            free = loose & ~(choice[nodes] & ~faces.turned(mesh, elements, closed=closed))
+            stuck, bonded = _stuck(given, tied, normals, nodes, opposite)
+            free = ~(stuck | bonded)
+            if choice[nodes].any():
+                free &= ~choice[nodes] | faces.turned(mesh, elements, closed=closed)
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
             fixed = not closed and name not in tool_of and not other
-            stuck = ~loose & ~bonded
-            on_surface = _on_surface(mesh, (values, *cases), nodes, normals, gap)
+            ends = nodes[ENDS]
+            on_surface = _on_surface(mesh, (values, *cases), ends, normals[ENDS], gap[ENDS])
             goes_on = _goes_on(mesh, values, elements, normals, on_surface) if fixed else (False, False)
-            at_bond = bonded[[0, -1]] & (not closed)
-            held = np.where((~loose & on_surface & fixed) | (bonded & on_surface), arc, np.nan)[[0, -1]]
+            at_bond = bonded[ENDS] & (not closed)
+            held = np.where(on_surface & (bonded[ENDS] | (stuck[ENDS] & fixed)), arc[ENDS], np.nan)
+            at, fast = np.flatnonzero(free), np.flatnonzero(stuck)
             pieces.append(
                 _Piece(
-                    number, tool_of.get(name), elements, elements, length, goes_on, at_bond, nodes[free], arc[free],
-                    normals[free], lies[free], gap[free], opposite[free], held, mesh.nodes[nodes[[0, -1]]],
-                    HeldNodes(np.full(len(nodes), number)[stuck], nodes[stuck], normals[stuck], gap[stuck]),
+                    number, tool_of.get(name), elements, elements, length, goes_on, at_bond, nodes[at], arc[at],
+                    normals[at], lies[at], gap[at], opposite[at], held, mesh.nodes[ends],
+                    HeldNodes(np.full(len(fast), number), nodes[fast], normals[fast], gap[fast]),
                 )
             )  # fmt: skip
-        if not any(len(piece.nodes) for piece in pieces if piece.zone == number) and (in_zone & choice[middles]).any():
+        touching = any(len(piece.nodes) for piece in pieces if piece.zone == number)
+        if not touching and choice[mesh.elements[in_zone, 1]].any():
             message = "no node of its edges is turned to the surface; give these edges more elements"
             raise ProblemError(Issue(path=("contact_zones", name, "edges"), message=message))
-        pieces += _standing(mesh, number, tool_of.get(name), in_zone, faces, across, values.displacement_given, tied)
-    facing = {number: mesh.facing[name] for number, name in enumerate(problem.zones) if name in mesh.facing}
-    return replace(_joined(mesh, pieces, tied, kinds), facing=facing)
+        pieces += _standing(mesh, number, tool_of.get(name), in_zone, faces, across, given, tied)
+    facing = {number: mesh.facing[name] for number, name in enumerate(zones) if name in mesh.facing}
+    return _joined(mesh, pieces, tied, kinds, facing)
+
+
+def _in_several(mesh: Mesh, in_zones: BoolArray) -> BoolArray:
+    """Whether each node (N,) is one of elements of several zones, (zones, m)."""
+    count = np.zeros(len(mesh.nodes), int)
+    for in_zone in in_zones if len(in_zones) > 1 else ():
+        count[mesh.nodes_of(np.flatnonzero(in_zone))] += 1
+    return count > 1
+
+
+def _parted(across: IntArray, tied: IntArray, kinds: IntArray) -> BoolArray:
+    """Whether nodes (N,) have two opposite nodes (2, N) that bonds do not join, or in bodies of two kinds."""
+    parted = across.min(axis=0) >= 0
+    one, two = across[:, parted]
+    parted[parted] = (tied[one] != tied[two]) | (kinds[one] != kinds[two])
+    return parted
 
 
 def _kinds(problem: Problem, mesh: Mesh) -> IntArray:
     """Number of the material and the heat at each node (N,): stress jumps where a bond joins bodies of other ones."""
+    kinds = np.zeros(len(mesh.nodes), int)
+    if not problem.bonded:
+        return kinds
     heats = zip(*([loads.temperature for loads in each] for each in problem.volume_loads), strict=True)
     of_parts = [(part.material, heat) for part, heat in zip(problem.parts, heats, strict=True)]
-    kinds = np.zeros(len(mesh.nodes), int)
     for part, kind in zip(mesh.parts, of_parts, strict=True):
         kinds[part.nodes] = of_parts.index(kind)
     return kinds
@@ -119,6 +136,17 @@ def _across(mesh: Mesh, facing: IntArray | None) -> IntArray:
     return across
 
 
+def _stuck(
+    given: BoolArray, tied: IntArray, normals: Array, nodes: IntArray, opposite: IntArray
+) -> tuple[BoolArray, BoolArray]:
+    """Whether displacements that are `given` (N, 2) hold pairs (k,) of nodes along the normal, and whether bonds do."""
+    stuck, bonded, paired = _held_along(normals, given[nodes]), np.zeros(len(nodes), bool), opposite >= 0
+    if paired.any():
+        bonded = paired & (tied[nodes] == tied[opposite])
+        stuck &= ~bonded & (~paired | _held_along(normals, given[opposite]))  # else the other body comes up to it
+    return stuck, bonded
+
+
 def _along(across: IntArray, nodes: IntArray, *, closed: bool) -> IntArray:
     """Opposite nodes of those (k,) of a piece in order, on the side of each which is on the piece."""
     side = np.ones(len(nodes), int)
@@ -133,6 +161,12 @@ class _NodeFaces(NamedTuple):
     normals: Array
     faces: Array
     differs: BoolArray
+
+    @classmethod
+    def of_one(cls, face: Closest) -> Self:
+        """One face for all sides of each node."""
+        gap, normals = face.gap[:, None].repeat(3, axis=1), face.normals[:, None].repeat(3, axis=1)
+        return cls(gap, normals, normals, np.zeros(gap.shape, bool))
 
     def along(self, nodes: IntArray, *, closed: bool) -> tuple[Array, Array, Array]:
         """Gap, normals and faces at the nodes of a piece in order, of that side of each which is on the piece."""
@@ -154,27 +188,37 @@ class _NodeFaces(NamedTuple):
         return nodes
 
 
-def _faces(outline: Outline, surface: AnySurface, deflection: Array | None) -> _NodeFaces:
-    """Faces of a surface at all nodes, or of the deflected contour."""
+def _faces(outline: Outline, surface: AnySurface, in_zone: BoolArray, deflection: Array | None) -> _NodeFaces:
+    """Faces of a surface at all nodes, or of the deflected contour.
+
+    Those of another elastic body, which take long, are found at nodes of elements (m,) in the zone alone.
+    """
+    mesh = outline.mesh
     if isinstance(surface, DeflectedContour):
         assert deflection is not None
-        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in surface.behind(deflection))
-        held = Faces(gap, normals, normals)
+        return _NodeFaces.of_one(surface.behind(deflection))
+    if isinstance(surface, SmoothSurface):
+        return _NodeFaces.of_one(surface.held(mesh.nodes))
+    if isinstance(surface, BodySurface) and surface.elastic:
+        own, (inward, reach) = mesh.nodes_of(np.flatnonzero(in_zone)), outline.sides
+        held = Faces(*(np.zeros((len(mesh.nodes), *shape)) for shape in ((3,), (3, 2), (3, 2))))
+        for part, known in zip(held, surface.faces(mesh.nodes[own], inward[own], reach[own]), strict=True):
+            part[own] = known
     else:
-        held = surface.faces(outline.mesh.nodes, *outline.sides)
+        held = surface.faces(mesh.nodes, *outline.sides)
     other = magnitudes(held.normals - held.normals[:, [2, 0, 0]]) > ALIKE
-    return _NodeFaces(*held, other | (abs(held.gap - held.gap[:, [2, 0, 0]]) > ALIKE * outline.mesh.size))
+    return _NodeFaces(*held, other | (abs(held.gap - held.gap[:, [2, 0, 0]]) > ALIKE * mesh.size))
 
 
 def _between(mesh: Mesh, runs: Iterable[tuple[IntArray, bool]], divides: BoolArray) -> Iterator[tuple[IntArray, bool]]:
     """Divide runs at nodes (N,) that two faces of the surface hold, or that have two opposite nodes."""
     for elements, closed in runs:
-        corner = divides[mesh.elements[elements, 0]]
-        if closed and corner.any():
-            first = int(np.argmax(corner))
-            elements, corner, closed = np.roll(elements, -first), np.roll(corner, -first), False
-        for piece in np.split(elements, np.flatnonzero(corner[1:]) + 1):
-            yield piece, closed
+        corners = np.flatnonzero(divides[mesh.elements[elements, 0]])
+        if closed and len(corners):
+            elements, corners, closed = np.roll(elements, -corners[0]), corners - corners[0], False
+        bounds = [0, *corners[corners > 0].tolist(), len(elements)]
+        for low, high in pairwise(bounds):
+            yield elements[low:high], closed
 
 
 def _standing(
@@ -182,7 +226,8 @@ def _standing(
     tied: IntArray,
 ) -> Iterator["_Piece"]:  # fmt: skip
     """Corners of the body that stand on a face of the surface to which neither side of them is turned."""
-    for node in np.flatnonzero(faces.differs[: len(mesh.elements), 1] & (in_zone | in_zone[mesh.before])):
+    differs = faces.differs[: len(mesh.elements), 1]
+    for node in np.flatnonzero(differs & (in_zone | in_zone[mesh.before])) if differs.any() else ():
         elements = np.array([element for element in (mesh.before[node], node) if in_zone[element]])
         normals, nodes = faces.normals[[node], 1], np.array([node])
         opposite = across.max(axis=0)[node]
@@ -197,19 +242,24 @@ def _standing(
 
 def _on_surface(mesh: Mesh, values: Sequence[BoundaryValues], nodes: IntArray, normals: Array, gap: Array) -> BoolArray:
     """Whether prescribed displacements put nodes on the rigid surface, and no load case moves them off it."""
-    moved = [np.sum(normals * item.displacement[nodes], axis=1) for item in values]
-    return np.all(np.abs([gap + moved[0], *moved[1:]]) <= ALIKE * mesh.size, axis=0)
+    moved = np.array([(normals * item.displacement[nodes]).sum(axis=1) for item in values])
+    moved[0] += gap
+    return np.all(abs(moved) <= ALIKE * mesh.size, axis=0)
 
 
 def _goes_on(
     mesh: Mesh, values: BoundaryValues, elements: IntArray, normals: Array, on_surface: BoolArray
 ) -> tuple[bool, bool]:
-    """Whether contact continues beyond each end of a run, on an element that a condition holds."""
+    """Whether contact continues beyond each end of a run, on an element that a condition holds.
+
+    `on_surface` (2,) is that of both ends.
+    """
     first, after = elements[0], mesh.elements[elements[-1], 2]  # an element has the number of its start node
-    here, beyond = np.array([first, after]), np.array([mesh.before[first], after])
-    smooth = abs(mesh.turns[here]) < SMOOTH
-    start, end = smooth & on_surface[[0, -1]] & _held_along(normals[[0, -1]], values.traction_unknown[beyond])
-    return bool(start), bool(end)
+    goes_on = on_surface & _held_along(normals[ENDS], values.traction_unknown[[mesh.before[first], after]])
+    if not goes_on.any():
+        return False, False
+    start, end = (goes_on & (abs(mesh.turns[[first, after]]) < SMOOTH)).tolist()
+    return start, end
 
 
 class _Piece(NamedTuple):
@@ -236,7 +286,9 @@ class _Piece(NamedTuple):
     held: HeldNodes | None
 
 
-def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray, kinds: IntArray) -> ContactPoints:
+def _joined(
+    mesh: Mesh, pieces: list[_Piece], tied: IntArray, kinds: IntArray, facing: Mapping[int, IntArray]
+) -> ContactPoints:
     """Join all runs, and find the (element, local node) pairs of every point.
 
     Pressure jumps at a node where a bond joins bodies of other `kinds` (N,). It is no contact point: on either side it
@@ -246,20 +298,25 @@ def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray, kinds: IntArray) -
     node, normals, gap, opposite = (
         np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("nodes", "normals", "gap", "opposite")
     )
-    tool = [piece.tool for piece, size in zip(pieces, sizes, strict=True) for _ in range(size)]
-    sides = np.column_stack([tied[node], np.where(opposite >= 0, tied[opposite], -1)])
+    run = np.arange(len(pieces)).repeat(sizes)
+    tool = np.array([piece.tool for piece in pieces], object)[run]
+    sides = tied[node], np.where(opposite >= 0, tied[opposite], -1)
     first_alike = _first_alike(mesh, sides, normals, gap, tool)
-    of_sides = np.column_stack([kinds[node], np.where(opposite >= 0, kinds[opposite], -1)])
-    jumps = _jumps(sides, of_sides, normals, tool)
-    jumps |= (first_alike >= 0) & jumps[first_alike]
-    first_alike[jumps] = -1
-    own = first_alike == np.arange(len(node))
-    sense = np.where(np.sum(normals * normals[first_alike], axis=1) < 0, -1.0, 1.0)
-    number = np.where(first_alike < 0, -1, (np.cumsum(own) - 1)[first_alike])
+    jumps = np.zeros(len(node), bool)
+    if (kinds > 0).any():  # else all bodies are alike
+        of_sides = kinds[node], np.where(opposite >= 0, kinds[opposite], -1)
+        jumps = _jumps(np.stack(sides, axis=1), np.stack(of_sides, axis=1), normals, tool)
+        jumps |= (first_alike >= 0) & jumps[first_alike]
+        first_alike[jumps] = -1
+    alone = first_alike == np.arange(len(node))
+    own, number, sense = np.flatnonzero(alone), alone.cumsum() - 1, np.ones(len(node))
+    if len(own) < len(node):
+        sense[(normals * normals[first_alike]).sum(axis=1) < 0] = -1.0
+        number = np.where(first_alike < 0, -1, number[first_alike])
     elements, points, senses = [], [], []
     held_arc = np.array([piece.held_arc for piece in pieces])
     held_points = np.array([piece.held_points for piece in pieces])
-    for row, (first, piece) in enumerate(zip(np.cumsum([0, *sizes]), pieces, strict=False)):
+    for row, (first, piece) in enumerate(zip(accumulate(sizes, initial=0), pieces, strict=False)):
         for end, i in enumerate((0, len(piece.nodes) - 1) if len(piece.nodes) else ()):
             shared = first_alike[first + i] not in (-1, first + i)  # is a point of another zone
             if shared or jumps[first + i]:  # contact goes on up to there
@@ -268,29 +325,29 @@ def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray, kinds: IntArray) -
         point_of[piece.nodes] = number[first : first + len(piece.nodes)]
         sense_of = np.ones(len(mesh.nodes))
         sense_of[piece.nodes] = sense[first : first + len(piece.nodes)]
-        carrier, signs = point_of[mesh.elements[piece.elements]], sense_of[mesh.elements[piece.elements]]
+        its_nodes = mesh.elements[piece.elements]
+        carrier, signs = point_of[its_nodes], sense_of[its_nodes]
         if jumps.any():
-            at_jump = np.isin(mesh.elements[piece.elements], piece.nodes[jumps[first : first + len(piece.nodes)]])
+            at_jump = np.isin(its_nodes, piece.nodes[jumps[first : first + len(piece.nodes)]])
             carrier, signs = (np.where(at_jump, values[:, [1]], values) for values in (carrier, signs))
         beyond = piece.bonded | piece.goes_on
         for goes_on, element, end in zip(beyond.tolist(), (0, -1), (0, 2), strict=True):
             if goes_on:
                 carrier[element, end] = carrier[element, 1]
-        elements.append(np.repeat(piece.elements, 3))
-        points.append(carrier.ravel())
-        senses.append(signs.ravel())
-    triples = np.column_stack(
-        [np.concatenate(elements), np.tile(np.arange(3), sum(map(len, elements)) // 3), np.concatenate(points)]
-    )
-    code = (triples[:, 0] * 3 + triples[:, 1]) * (len(node) + 1) + triples[:, 2] + 1
-    once = np.sort(np.unique(code, return_index=True)[1])  # zones that share an edge and a face share its points
-    once = once[triples[once, 2] >= 0]
-    element, local, point = triples[once].T
+        elements.append(piece.elements)
+        points.append(carrier)
+        senses.append(signs)
+    shares = 3 * np.concatenate(elements)[:, None] + np.arange(3)
+    share, point = shares.ravel(), np.concatenate(points).ravel()
+    once = np.flatnonzero(point >= 0)
+    if len(pieces) > 1:  # zones that share an edge and a face share its points
+        once = once[_once(share[once] * len(node) + point[once])]
+    element, local = np.divmod(share[once], 3)
     return ContactPoints(
         mesh=mesh,
         node=node[own],
-        zone=np.repeat([piece.zone for piece in pieces], sizes)[own],
-        run=np.repeat(np.arange(len(pieces)), sizes)[own],
+        zone=np.array([piece.zone for piece in pieces])[run[own]],
+        run=run[own],
         arc_position=np.concatenate([piece.arc for piece in pieces])[own],
         run_length=np.array([piece.length for piece in pieces]),
         normals=normals[own],
@@ -298,8 +355,8 @@ def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray, kinds: IntArray) -
         gap=gap[own],
         element=element,
         local=local,
-        point=point,
-        sense=np.concatenate(senses)[once],
+        point=point[once],
+        sense=np.concatenate(senses).ravel()[once],
         held_arc=held_arc,
         held_points=held_points,
         tied=tied,
@@ -307,20 +364,34 @@ def _joined(mesh: Mesh, pieces: list[_Piece], tied: IntArray, kinds: IntArray) -
         elements_of_run=tuple(piece.own for piece in pieces),
         zone_of_run=tuple(piece.zone for piece in pieces),
         held=HeldNodes(*map(np.concatenate, zip(*(piece.held for piece in pieces if piece.held), strict=True))),
+        facing=facing,
     )
 
 
-def _first_alike(mesh: Mesh, sides: IntArray, normals: Array, gap: Array, tool: Sequence[str | None]) -> IntArray:
+def _once(code: IntArray) -> IntArray:
+    """Ascending indices of the first of equal numbers (q,)."""
+    order = code.argsort(kind="stable")
+    first = np.ones(len(code), bool)
+    first[order[1:]] = code[order[1:]] != code[order[:-1]]
+    return np.flatnonzero(first)
+
+
+def _first_alike(
+    mesh: Mesh, sides: tuple[IntArray, IntArray], normals: Array, gap: Array, tool: ObjectArray
+) -> IntArray:
     """The first point (n,) with the same nodes, normal, gap and tool, which contacts that meet on one surface share.
 
-    Nodes (n, 2) on both sides are one if they move together. Two contacts may state the sides the other way round. It
+    Nodes (n,) on both sides are one if they move together. Two contacts may state the sides the other way round. It
     is -1 for a point that another one with a smaller gap keeps from touching.
     """
-    first, (low, high) = np.arange(len(sides)), np.sort(sides, axis=1).T
-    _, place = np.unique(low * len(mesh.nodes) + high, return_inverse=True)
+    (near, far), first = sides, np.arange(len(gap))
+    code = np.minimum(near, far) * len(mesh.nodes) + np.maximum(near, far)
+    if len(_once(code)) == len(code):
+        return first
+    _, place = np.unique(code, return_inverse=True)
     for j in np.flatnonzero(np.bincount(place)[place] > 1).tolist():
         same = [i for i in np.flatnonzero(place == place[j]).tolist() if tool[i] == tool[j]]
-        turned = {i: 1.0 if sides[i, 0] == sides[j, 0] else -1.0 for i in same}
+        turned = {i: 1.0 if near[i] == near[j] else -1.0 for i in same}
         same = [i for i in same if np.hypot(*(normals[i] - turned[i] * normals[j])) <= ALIKE]
         least = min(gap[i] for i in same)
         if gap[j] <= least + ALIKE * mesh.size:
@@ -330,15 +401,12 @@ def _first_alike(mesh: Mesh, sides: IntArray, normals: Array, gap: Array, tool: 
     return first
 
 
-def _jumps(sides: IntArray, kinds: IntArray, normals: Array, tool: Sequence[str | None]) -> BoolArray:
+def _jumps(sides: IntArray, kinds: IntArray, normals: Array, tool: ObjectArray) -> BoolArray:
     """Whether points (n,) move with others where a body on one of both sides (n, 2) is of another kind (n, 2).
 
     Common normals with bodies of other moduli are not quite the same.
     """
-    jumps = np.zeros(len(sides), bool)
-    if not (kinds > 0).any():  # all bodies are alike
-        return jumps
-    order = np.argsort(sides, axis=1)
+    jumps, order = np.zeros(len(sides), bool), np.argsort(sides, axis=1)
     sides, kinds = (np.take_along_axis(values, order, axis=1) for values in (sides, kinds))
     place = np.unique(sides, axis=0, return_inverse=True)[1].reshape(-1)
     for j in np.flatnonzero(np.bincount(place)[place] > 1).tolist():
@@ -349,11 +417,13 @@ def _jumps(sides: IntArray, kinds: IntArray, normals: Array, tool: Sequence[str 
 
 def _nodes_along(mesh: Mesh, halves: Array, elements: IntArray, *, closed: bool) -> tuple[IntArray, Array]:
     """Nodes of a run in order, and the arc length up to each."""
-    nodes = np.append(mesh.elements[elements, :2].ravel(), mesh.elements[elements[-1], 2])
-    arc = np.append(0.0, np.cumsum(halves[elements].ravel()))
+    nodes, arc = np.empty(2 * len(elements) + 1, int), np.zeros(2 * len(elements) + 1)
+    nodes[:-1], nodes[-1] = mesh.elements[elements, :2].ravel(), mesh.elements[elements[-1], 2]
+    halves[elements].cumsum(out=arc[1:])
     return (nodes[:-1], arc[:-1]) if closed else (nodes, arc)
 
 
 def _held_along(normals: Array, given: BoolArray) -> BoolArray:
     """Whether prescribed displacements (n, 2) span the normal."""
-    return np.all((abs(normals) <= PARALLEL) | given, axis=1)
+    held = (abs(normals) <= PARALLEL) | given
+    return held[:, 0] & held[:, 1]

@@ -9,7 +9,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
-from bemcontact.bem.mesh import Mesh, MeshPart
+from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.unit_pressures import UnitPressures
 
 ALIKE = 1e-9
@@ -114,7 +114,11 @@ class ContactPoints:
 
         What contacts with equal sides share of a point has one pressure on each body, also across two bonded ones.
         """
-        node, facing = np.full(len(self), -1), np.full(len(self.point), -1)
+        node = np.full(len(self), -1)
+        if not self.facing:
+            none = np.zeros(0, int)
+            return Opposite(node, none, none, none, np.zeros((0, 2)))
+        facing = np.full(len(self.point), -1)
         for zone, elements in self.facing.items():
             own = self.zone_of_share == zone
             facing[own] = elements[self.element[own]]
@@ -142,10 +146,13 @@ class ContactPoints:
         Bonded nodes that share a point count in proportion to the forces on them: then pressure and gap do the same
         work in any motion, also in one that would part them.
         """
-        other = self.opposite
+        other, node, gap, change = self.opposite, self.node, np.arange(len(self)), self.normals
         has = np.flatnonzero(other.node >= 0)
-        node, gap = np.concatenate([self.node, other.node[has]]), np.concatenate([np.arange(len(self)), has])
-        change = np.concatenate([self.normals, -self.normals[has]])
+        if len(has):
+            node, gap = np.concatenate([node, other.node[has]]), np.concatenate([gap, has])
+            change = np.concatenate([change, -change[has]])
+        if (self.tied == np.arange(len(self.tied))).all():  # nothing is bonded
+            return node, gap, change
         element, local = np.append(self.element, other.element), np.append(self.local, other.local)
         point, at = np.append(self.point, self.point[other.share]), self.mesh.elements[element, local]
         far = np.where(other.node >= 0, other.node, self.node)
@@ -166,28 +173,27 @@ class ContactPoints:
     @cached_property
     def unit_pressures(self) -> tuple[UnitPressures, ...]:
         """Unit pressures on the mesh of each of the bodies."""
-        return tuple(map(self._unit_pressures, self.mesh.parts))
-
-    def _unit_pressures(self, part: MeshPart) -> UnitPressures:
-        """Unit pressures on the mesh of one of the bodies."""
-        other, m = self.opposite, len(self.mesh.elements)
-        element, local, point = (
-            np.concatenate(both)
-            for both in (
-                (self.element, other.element), (self.local, other.local), (self.point, self.point[other.share]),
-            )
-        )  # fmt: skip
-        traction = np.concatenate([self.tractions, other.traction])
-        node, gap, change = self.moved
-        new = np.full(len(self.mesh.nodes), -1)
-        new[part.nodes] = np.arange(len(part.mesh.nodes))
-        elements = np.arange(m)[part.elements]
-        own, seen = (element >= elements[0]) & (element <= elements[-1]), new[node] >= 0
-        number, pressure = np.unique(point[own], return_inverse=True)
-        return UnitPressures(
-            number=number, element=element[own] - elements[0], local=local[own], pressure=pressure,
-            traction=traction[own], node=new[node[seen]], gap=gap[seen], change=change[seen],
-        )  # fmt: skip
+        element, local, point, traction = self.element, self.local, self.point, self.tractions
+        (node, gap, change), other = self.moved, self.opposite
+        if len(other.share):
+            element, local = np.concatenate([element, other.element]), np.concatenate([local, other.local])
+            point, traction = np.append(point, point[other.share]), np.concatenate([traction, other.traction])
+        of_parts = list[UnitPressures]()
+        for part in self.mesh.parts:
+            first, last, _ = part.elements.indices(len(self.mesh.elements))
+            own = np.flatnonzero((element >= first) & (element < last))
+            new = np.full(len(self.mesh.nodes), -1)
+            new[part.nodes] = np.arange(len(part.mesh.nodes))
+            seen, pressed = np.flatnonzero(new[node] >= 0), np.zeros(len(self), bool)
+            pressed[point[own]] = True
+            of_parts.append(
+                UnitPressures(
+                    number=np.flatnonzero(pressed), element=element[own] - first, local=local[own],
+                    pressure=(pressed.cumsum() - 1)[point[own]], traction=traction[own], node=new[node[seen]],
+                    gap=gap[seen], change=change[seen],
+                )
+            )  # fmt: skip
+        return tuple(of_parts)
 
     def __len__(self) -> int:
         """Return the number of points."""

@@ -29,6 +29,8 @@ PRESSED_IN = 0.1
 
 BEHIND = 1e-9
 """Distance over the size of a body that is round-off, where the body lies behind a surface and touches it."""
+FEW = 8
+"""Number of nodes of which one is before a surface nearly always."""
 MATRICES = 3
 """Number of full matrices of all degrees of freedom that are in memory at the same time."""
 
@@ -39,8 +41,11 @@ def _ensure_before_surfaces(problem: Problem, mesh: Mesh) -> None:
     A tool may be there before it is displaced.
     """
     with_tools = {zone for tool in problem.tools.values() for zone in tool.zones}
+    some = mesh.nodes[:: max(len(mesh.nodes) // FEW, 1)]
     for name, zone in problem.zones.items():
         if isinstance(zone.surface, DeflectedContour | BodySurface) or name in with_tools:
+            continue
+        if zone.surface.closest(some).gap.max() > BEHIND * mesh.size:
             continue
         gap = zone.surface.closest(mesh.nodes).gap
         pressed_in = isinstance(zone.surface, Circle) and -gap.min() < PRESSED_IN * mesh.size

@@ -118,8 +118,9 @@ def feet(item: Matched, edge: Edge, at: Array) -> Array:
 
 
 def _thirds(ends: Array) -> Array:
-    """Start, middle and end (e, 3) of elements with these ends (e + 1,)."""
-    return np.column_stack([ends[:-1], (ends[:-1] + ends[1:]) / 2, ends[1:]])
+    """Start, middle and end (..., e, 3) of elements with these ends (..., e + 1)."""
+    starts, stops = ends[..., :-1], ends[..., 1:]
+    return np.stack([starts, (starts + stops) / 2, stops], axis=-1)
 
 
 def _with_ends(ends: Array, places: Sequence[float], edge: Edge) -> Array:
@@ -181,7 +182,7 @@ def _matched(
     ]
     away = [np.abs(own[:, None] - places).min(axis=1) > SAME for places in taken]
     every = np.sort(np.concatenate([own[np.all([keep, *away], axis=0)], *taken]))
-    pieces, pairs = list[Array](), list[tuple[str, Facing]]()
+    pairs = list[tuple[str, Facing]]()
     follows: dict[int, tuple[Array, Matched, int]] = {}
     begins = [int(np.abs(every - places[0]).argmin()) for places, *_ in covered]
     for begin, (places, nodes, item, last) in zip(begins, covered, strict=True):
@@ -191,22 +192,19 @@ def _matched(
         }
     if covered and (np.diff(every) < LEAST).any():
         raise ProblemError(_too_short(covered[0][2]))
-    for element in range(len(every) - 1):
-        number = len(pieces) * refine
-        if element not in follows:
-            steps = np.linspace(every[element], every[element + 1], refine + 1)
-            steps[-1] = every[element + 1]
-            pieces.append(_thirds(steps))
-            continue
+    steps = np.linspace(every[:-1], every[1:], refine + 1, axis=1)
+    steps[:, -1] = every[1:]
+    elements = _thirds(steps)
+    for element in sorted(follows):
         nodes, item, other = follows[element]
         nodes[0, 0], nodes[-1, 2] = every[element], every[element + 1]
         nodes[1:, 0] = nodes[:-1, 2]
-        pieces.append(nodes)
+        elements[element] = nodes
         pairs += [
-            (item.contact, Facing(item.part.edge, other * refine + refine - 1 - i, item.onto, number + i))
+            (item.contact, Facing(item.part.edge, other * refine + refine - 1 - i, item.onto, element * refine + i))
             for i in range(refine)
         ]
-    return every, np.concatenate(pieces), pairs
+    return every, elements.reshape(-1, 3), pairs
 
 
 def _crossing(item: Matched) -> Issue:

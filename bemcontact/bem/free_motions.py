@@ -1,7 +1,7 @@
 """Motions in which bodies and tools move rigidly together: those that contact sees, the others, and their names."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions, echelon, short_svd
 from bemcontact.bem.unit_pressures import UnitPressures
-from bemcontact.problems.contact_zone import RigidTool, ToolAction
+from bemcontact.problems.contact_zone import ToolAction
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import DeflectedContour
 from bemcontact.problems.validation import Point
@@ -70,36 +70,36 @@ def placed_tools(problem: Problem, points: ContactPoints) -> PlacedTools:
     tools, cases = problem.tools, problem.load_cases
     names = tuple(problem.zones)
     places = points.mesh.nodes[points.node] - steps_of_surfaces(problem)[points.zone]
-    columns, about = [np.zeros((len(points), 0))], []
-    for tool in tools.values():
+    motions, about = np.zeros((len(points), 3 * len(tools))), []
+    for number, tool in enumerate(tools.values()):
         place = np.array(tool.point or (0.0, 0.0))
         moved = np.isin(points.zone, [names.index(zone) for zone in tool.zones])
-        turn = RigidMotions(coefficients=np.eye(3), center=place, radius=1.0)
-        along = np.einsum("nx,nxk->nk", points.normals, turn.displacement(places))
-        columns.append(np.where(moved[:, None], -along, 0.0))
+        (x, y), (along_x, along_y) = (places - place).T, points.normals.T
+        along = np.stack([along_x, along_y, along_y * x - along_x * y], axis=1)
+        motions[moved, 3 * number : 3 * number + 3] = -along[moved]
         about.append(place)
     actions: list[Mapping[str, ToolAction]] = [tools, *(case.tools for case in cases.values())]
+    position, force = np.zeros((2, 3 * len(tools), len(actions)))
+    for row, name in enumerate(tools):
+        for column, action in enumerate(actions):
+            if name in action:
+                own = slice(3 * row, 3 * row + 3), column
+                position[own], force[own] = action[name].position, action[name].load
     return PlacedTools(
         names=tuple(tools),
         point=np.array(about).reshape(-1, 2),
         places=places,
-        motions=np.hstack(columns),
+        motions=motions,
         free=np.array([tool.free for tool in tools.values()], bool).ravel(),
-        position=np.column_stack([_components(tools, action, "position") for action in actions]),
-        force=np.column_stack([_components(tools, action, "load") for action in actions]),
+        position=position,
+        force=force,
     )
 
 
 def steps_of_surfaces(problem: Problem) -> Array:
     """Displacements (z, 2) [L] that contact has followed, of the rigid surfaces of all zones; zero for others."""
     surfaces = [zone.surface for zone in problem.zones.values()]
-    return np.array([(0.0, 0.0) if isinstance(it, DeflectedContour) else it.way.step for it in surfaces]).reshape(-1, 2)
-
-
-def _components(tools: Mapping[str, RigidTool], actions: Mapping[str, ToolAction], key: str) -> Array:
-    """One component (3 t,) of an action on each tool, zero where there is none."""
-    rows = [getattr(actions[name], key) if name in actions else (0.0, 0.0, 0.0) for name in tools]
-    return np.array(rows, float).ravel()
+    return np.array([(0.0, 0.0) if isinstance(it, DeflectedContour) else it.way[:2] for it in surfaces]).reshape(-1, 2)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -113,6 +113,7 @@ class FreeMotions:
     bodies : how sentences call the bodies
     names : of the tools
     halves : half of the size of each body [L]; the radius if not given
+    unit_changes : (n, 3 b + 3 t) of the gaps by the motions with one coefficient of one, the others zero
     centers : (b + t, 2) centers and poles [L]
     to_points : (3 t, 3 t) motion of the tools, x, y and rotation [rad/L] about their own points, from that about poles
     radius : [L]
@@ -125,6 +126,7 @@ class FreeMotions:
     radius: float
     bodies: tuple[str, ...] = (BODY,)
     halves: tuple[float, ...] = ()
+    unit_changes: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __len__(self) -> int:
         """Return the number of motions."""
@@ -150,6 +152,11 @@ class FreeMotions:
     def tools(self) -> Array:
         """Motions of the tools (3 t, k): x, y and rotation [rad/L] about their points, tool by tool."""
         return self.to_points @ self.coefficients[:, 3 * len(self.bodies) :].T
+
+    @property
+    def gap_changes(self) -> Array:
+        """R (n, k): the changes of all gaps."""
+        return self.unit_changes @ self.coefficients.T
 
     def combined(self, factors: Array) -> "FreeMotions":
         """Combinations of these motions by the columns of factors (k, j)."""
@@ -200,6 +207,8 @@ class FreeMotions:
 
     def in_user_units(self) -> "FreeMotions":
         """These motions scaled so that work in them is a force [p L] for a translation, else a moment [p L²]."""
+        if not len(self):
+            return self
         largest = np.hypot(self.coefficients[:, ::3], self.coefficients[:, 1::3]).max(axis=1, initial=UNSEEN)
         return self.combined(np.diag(np.where(np.isinf(self.arms), 1 / largest, self.arms)))
 
@@ -265,25 +274,28 @@ def free_motions(
     poles, radius = tools.poles(points), of_bodies[0].radius
     to_points = _to_points(tools.point - poles, radius)
     changes = [
-        replace(own, coefficients=np.eye(3)).gap_changes(pressures, part.mesh, len(points))
+        own.unit_changes(pressures, part.mesh, len(points))
         for own, part, pressures in zip(of_bodies, points.mesh.parts, points.unit_pressures, strict=True)
     ]
-    basis = np.hstack([*changes, tools.motions @ to_points])
+    basis = np.concatenate([*changes, tools.motions @ to_points], axis=1)
     every = FreeMotions(
         coefficients=np.zeros((0, first + 3 * t)),
         bodies=bodies,
         names=tools.names,
-        centers=np.vstack([*(own.center for own in of_bodies), poles]),
+        centers=np.concatenate([[own.center for own in of_bodies], poles]),
         to_points=to_points,
         radius=radius,
         halves=tuple(part.mesh.size / 2 for part in points.mesh.parts),
+        unit_changes=basis,
     )
     held = np.zeros((sum(map(len, of_bodies)), first + 3 * t))
     row = 0
     for number, own in enumerate(of_bodies):
         held[row : row + len(own), 3 * number : 3 * number + 3] = own.coefficients
         row += len(own)
-    held, apart = split_motions(held, _at_bonds(bonds, of_bodies) @ held[:, :first].T, UNSEEN)
+    apart = held[:0]
+    if len(bonds):
+        held, apart = split_motions(held, _at_bonds(bonds, of_bodies) @ held[:, :first].T, UNSEEN)
     seen, unseen = _split(basis, held)
     if tools.free.any():
         (body, lost), (loaded, idle) = (seen, unseen), _split(basis, np.eye(first + 3 * t)[first:][tools.free])
@@ -302,6 +314,8 @@ def _along_walls(motions: Array, normals: Sequence[Array]) -> Array:
     So the body slides along them without any round-off that another surface would have to hold. `normals` are those of
     all points (n, 2) for each body, zero where it has no part.
     """
+    if len(motions) < 2:
+        return motions
     motions = motions.copy()
     for number, own in enumerate(normals):
         ways = np.eye(motions.shape[1])[3 * number : 3 * number + 2]
@@ -317,29 +331,31 @@ def _along_walls(motions: Array, normals: Sequence[Array]) -> Array:
 def _axis_of_walls(normals: Array) -> Array | None:
     """The upward normal (2,) of two opposite walls, from those of their points (n, 2); None if it is an axis."""
     angles = np.mod(np.arctan2(normals[:, 1], normals[:, 0]), 2 * np.pi)
-    order = np.argsort(np.mod(angles, np.pi))
-    groups = np.split(order, np.flatnonzero(np.diff(np.mod(angles, np.pi)[order]) > UNSEEN) + 1)
-    both = [group for group in groups if min(np.bincount(angles[group] >= np.pi, minlength=2)) >= WALL]
-    if not both:
+    of_lines = np.mod(angles, np.pi)
+    order = of_lines.argsort()
+    group = np.append(0, (np.diff(of_lines[order]) > UNSEEN).cumsum())  # of points with normals along one line
+    size, down = np.bincount(group), np.bincount(group, angles[order] >= np.pi)
+    size[np.minimum(size - down, down) < WALL] = 0
+    if not size.any():
         return None
-    widest = max(both, key=len)
-    across = normals[widest[0]] * np.sign(normals[widest[0], 1])
+    widest = order[group.searchsorted(size.argmax())]
+    across = normals[widest] * np.sign(normals[widest, 1])
     return across if abs(across).min() > UNSEEN else None
 
 
 def _at_bonds(bonds: BondedPoints, of_bodies: Sequence[RigidMotions]) -> Array:
     """Changes (b, 3 b') of the components of bonds by unit motions of each body."""
-    changes = np.zeros((len(bonds), 3 * len(of_bodies)))
-    for number, (own, part) in enumerate(zip(of_bodies, bonds.mesh.parts, strict=True) if len(bonds) else ()):
-        pressures = bonds.added_to(UnitPressures.none(), part, 0)
-        changes[:, 3 * number : 3 * number + 3] = replace(own, coefficients=np.eye(3)).gap_changes(
-            pressures, part.mesh, len(bonds)
-        )
-    return changes
+    changes = [
+        own.unit_changes(bonds.added_to(UnitPressures.none(), part, 0), part.mesh, len(bonds))
+        for own, part in zip(of_bodies, bonds.mesh.parts, strict=True)
+    ]
+    return np.concatenate(changes, axis=1)
 
 
 def _counterclockwise(motions: Array) -> Array:
     """Motions (k, 3 b + 3 t) with the sense in which the first part that turns does so counterclockwise."""
+    if not len(motions):
+        return motions
     turns = motions[:, 2::3]
     turning = abs(turns) > UNSEEN * abs(motions).max(axis=1, initial=UNSEEN, keepdims=True)
     first = turns[np.arange(len(turns)), turning.argmax(axis=1)]

@@ -215,9 +215,9 @@ class Loading:
 
     def true_work(self, mesh: Mesh, motions: FreeMotions) -> Array:
         """Work (k,) in rigid motions [p L] on the exact curves, to round-off: it does not depend on the mesh."""
-        each = enumerate(zip(self.true_forces, self.true_moments.tolist(), strict=True))
-        parts = (motions.of_body(i).work_of(force, moment, about=mesh.center) for i, (force, moment) in each)
-        return np.sum([*parts], axis=0)
+        (x, y), (force_x, force_y) = (motions.centers[: len(self.true_forces)] - mesh.center).T, self.true_forces.T
+        moments = (self.true_moments - (x * force_y - y * force_x)) / motions.radius  # about the centers
+        return motions.of_bodies @ np.stack([force_x, force_y, moments], axis=1).ravel()
 
     def magnitude(self, mesh: Mesh) -> float:
         """Sum of the magnitudes of all loads [p L]."""
@@ -282,8 +282,9 @@ def _loading(problem: Problem, mesh: Mesh, conditions: Mapping[str, Condition], 
 
 def _resultant(part: Part, loads: Loads, conditions: Mapping[str, Condition], center: Array) -> tuple[Array, float]:
     """Resultant (2,) [p L] of all loads on a body and its moment about the center [p L²]."""
-    force, moment = true_resultant(part.edges, loads, center)
-    for edge in part.edges:
+    edges = part.edges
+    force, moment = true_resultant(edges, loads, center)
+    for edge in edges:
         if edge.name in conditions and conditions[edge.name].presses:
             points, normals, lengths, along = along_curve(edge)
             forces = lengths[:, None] * applied_traction(conditions[edge.name], points, normals, along)
@@ -298,11 +299,14 @@ def particular_solutions(problem: Problem, mesh: Mesh, loads: Sequence[Loads]) -
     result = ParticularSolution(
         displacement=np.zeros_like(mesh.nodes), traction=np.zeros((*mesh.elements.shape, 2)), magnitude=0.0
     )
+    if not any(its.given for its in loads):
+        return result
+    magnitude = 0.0
     for part, on_mesh, its in zip(problem.parts, mesh.parts, loads, strict=True):
         own = particular_solution(its, part.material, on_mesh.mesh)
         result.displacement[on_mesh.nodes], result.traction[on_mesh.elements] = own.displacement, own.traction
-        result = replace(result, magnitude=result.magnitude + own.magnitude)
-    return result
+        magnitude += own.magnitude
+    return replace(result, magnitude=magnitude)
 
 
 def _case_loading(problem: Problem, mesh: Mesh, name: str, case: LoadCase, loads: Sequence[Loads]) -> Loading:

@@ -2,15 +2,16 @@
 
 import dataclasses
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.bem import reference_element
-from bemcontact.bem.division import Division, divided
+from bemcontact.bem.division import Facing, divided
 from bemcontact.problems.conditions import Along
 from bemcontact.problems.curves import Edge
 from bemcontact.problems.problem import Problem
@@ -110,6 +111,12 @@ class Mesh:
         )
         return MeshPart(mesh, elements, nodes)
 
+    def nodes_of(self, elements: IntArray) -> IntArray:
+        """Nodes (k,) of some elements, ascending."""
+        own = np.zeros(len(self.nodes), bool)
+        own[self.elements[elements]] = True
+        return np.flatnonzero(own)
+
     @cached_property
     def before(self) -> IntArray:
         """(m,) the element that ends where each element starts."""
@@ -118,14 +125,21 @@ class Mesh:
         return before
 
     @cached_property
+    def _box(self) -> tuple[Array, Array]:
+        """Least and largest coordinates (2,) of the nodes [L]."""
+        return self.nodes.min(axis=0), self.nodes.max(axis=0)
+
+    @cached_property
     def center(self) -> Array:
         """Middle (2,) of the bounding box [L]."""
-        return (self.nodes.min(axis=0) + self.nodes.max(axis=0)) / 2
+        low, high = self._box
+        return (low + high) / 2
 
     @cached_property
     def size(self) -> float:
         """Diameter of the bounding box [L]."""
-        return float(np.hypot(*np.ptp(self.nodes, axis=0)))
+        low, high = self._box
+        return float(np.hypot(*(high - low)))
 
     def place(self, point: Sequence[float] | Array) -> tuple[float, float]:
         """Return a point as (x, y) [L] for a sentence, with zero for what is round-off beside the size of the mesh."""
@@ -152,7 +166,7 @@ class Mesh:
     @cached_property
     def tangents(self) -> Array:
         """dx/dξ (m, 3, 2) [L] at each (element, local node)."""
-        return self.tangents_at(reference_element.NODES)
+        return self._tangents(reference_element.DERIVATIVES_AT_NODES)
 
     @cached_property
     def jacobians(self) -> Array:
@@ -162,8 +176,9 @@ class Mesh:
     @cached_property
     def normals(self) -> Array:
         """Unit normals (m, 3, 2) out of the body at each (element, local node)."""
-        rotated = np.stack([self.tangents[..., 1], -self.tangents[..., 0]], axis=-1)
-        return rotated / self.jacobians[..., None]
+        normals = self.tangents[..., ::-1] / self.jacobians[..., None]
+        normals[..., 1] *= -1
+        return normals
 
     @cached_property
     def turns(self) -> Array:
@@ -184,8 +199,8 @@ class Mesh:
     @cached_property
     def halves(self) -> Array:
         """Arc length (m, 2) [L] of the first and the second half of each element."""
-        xi, weights = reference_element.gauss_legendre(ARC_ORDER)
-        tangents = self.tangents_at(np.concatenate([xi / 2 - 0.5, xi / 2 + 0.5]))
+        derivatives, weights = reference_element.half_rule(ARC_ORDER)
+        tangents = self._tangents(derivatives)
         return np.hypot(tangents[..., 0], tangents[..., 1]).reshape(-1, 2, ARC_ORDER) @ weights / 2
 
     @property
@@ -195,8 +210,12 @@ class Mesh:
 
     def tangents_at(self, xi: Array) -> Array:
         """dx/dξ (m, q, 2) [L] at the local coordinates ξ (q,) of each element."""
+        return self._tangents(reference_element.derivatives(xi))
+
+    def _tangents(self, derivatives: Array) -> Array:
+        """dx/dξ (m, q, 2) [L], from the derivatives (q, 3) of the shape functions."""
         nodes = self.nodes[self.elements]
-        return reference_element.derivatives(xi) @ (nodes - nodes[:, 1:2])  # which keeps the digits of short elements
+        return derivatives @ (nodes - nodes[:, 1:2])  # which keeps the digits of short elements
 
 
 class MeshPart(NamedTuple):
@@ -212,35 +231,37 @@ def build(problem: Problem) -> Mesh:
 
     Middle nodes halve the arc length of an element, or of that of the other body which it faces.
     """
-    division = divided(problem)
-    starts, middles, after, edge_of, part_of = [], [], [], [], []
-    for number, part in enumerate(problem.parts):
-        for loop in part.loops:
-            first = len(edge_of)
-            for edge in loop:
-                fractions = division.fractions[edge.name]
-                points = edge.points(fractions[:, :2].T.ravel())
-                starts.append(points[: len(fractions)])
-                middles.append(points[len(fractions) :])
-                edge_of += [edge.name] * len(fractions)
-                part_of += [number] * len(fractions)
-            after += [*range(first + 1, len(edge_of)), first]
-    mesh = connected(np.vstack(starts), np.vstack(middles), np.array(after), edge_of)
-    lengths = {edge.name: edge.length for part in problem.parts for edge in part.edges}
-    return replace(
-        mesh,
-        fractions=np.concatenate([division.fractions[name] for name in mesh.edge_names]),
-        edge_lengths=tuple(lengths[name] for name in mesh.edge_names),
-        part=np.array(part_of),
-        facing={contact: _facing(division, contact, mesh) for contact in division.facing},
+    division, parts = divided(problem), problem.parts
+    edges = [edge for part in parts for edge in part.edges]
+    fractions = [division.fractions[edge.name] for edge in edges]
+    counts = [len(own) for own in fractions]
+    nodes = [edge.curve.at(own[:, :2].T.ravel()) for edge, own in zip(edges, fractions, strict=True)]
+    for edge, own in zip(edges, nodes, strict=True):
+        own[0] = edge.start
+    first_of = dict(zip((edge.name for edge in edges), accumulate(counts, initial=0), strict=False))
+    after, m = np.arange(1, sum(counts) + 1), sum(counts)
+    for loop in (loop for part in parts for loop in part.loops):
+        last = loop[-1].name
+        after[first_of[last] + len(division.fractions[last]) - 1] = first_of[loop[0].name]
+    return Mesh(
+        nodes=np.concatenate([own.reshape(2, -1, 2) for own in nodes], axis=1).reshape(-1, 2),
+        elements=elements_of_loops(after),
+        edge=np.repeat(np.arange(len(edges)), counts),
+        edge_names=tuple(edge.name for edge in edges),
+        fractions=np.concatenate(fractions),
+        edge_lengths=tuple(edge.length for edge in edges),
+        part=np.repeat([number for number, part in enumerate(parts) for _ in part.edges], counts),
+        facing={contact: _facing(pairs, first_of, m) for contact, pairs in division.facing.items()},
     )
 
 
-def _facing(division: Division, contact: str, mesh: Mesh) -> IntArray:
-    """Element (m,) of the second body of a contact opposite to each of the first, else -1."""
-    first_of = {name: int(np.argmax(mesh.edge == number)) for number, name in enumerate(mesh.edge_names)}
-    facing = np.full(len(mesh.elements), -1)
-    for edge, element, onto, opposite in division.facing[contact]:
+def _facing(pairs: Iterable[Facing], first_of: Mapping[str, int], elements: int) -> IntArray:
+    """Element (m,) of the second body of a contact opposite to each of the first, else -1.
+
+    `first_of` has the number of the first element of each edge.
+    """
+    facing = np.full(elements, -1)
+    for edge, element, onto, opposite in pairs:
         facing[first_of[edge] + element] = first_of[onto] + opposite
     return facing
 
@@ -259,31 +280,25 @@ def along_curve(edge: Edge) -> tuple[Array, Array, Array, Along]:
     """
     ends = edge.breakpoints(1)
     xi, weights = reference_element.gauss_legendre(CURVE_ORDER)
-    fractions = ((ends[:-1, None] + ends[1:, None]) / 2 + np.diff(ends)[:, None] / 2 * xi).ravel()
-    lengths = (np.diff(ends)[:, None] / 2 * weights).ravel() * edge.length
-    along = Along(fractions * edge.length, fractions * edge.length, edge.length)
-    return edge.points(fractions), edge.normals(fractions), lengths, along
+    middles, halves, length = (ends[:-1] + ends[1:]) / 2, (ends[1:] - ends[:-1]) / 2, edge.length
+    fractions = (middles[:, None] + halves[:, None] * xi).ravel()
+    along = fractions * length
+    lengths = (halves[:, None] * weights).ravel() * length
+    return edge.curve.at(fractions), edge.normals(fractions), lengths, Along(along, along, length)
 
 
-def connected(starts: Array, middles: Array, after: IntArray, edge_of: Sequence[str]) -> Mesh:
-    """Make a mesh from start and middle nodes (m, 2) [L], the element (m,) after each element, and m names of edges."""
-    m = len(starts)
-    numbers = {name: number for number, name in enumerate(dict.fromkeys(edge_of))}
-    return Mesh(
-        nodes=np.vstack([starts, middles]),
-        elements=np.column_stack([np.arange(m), m + np.arange(m), after]),
-        edge=np.array([numbers[name] for name in edge_of]),
-        edge_names=tuple(numbers),
-    )
+def elements_of_loops(after: IntArray) -> IntArray:
+    """Nodes (m, 3) of each element, from the element (m,) after each."""
+    m = len(after)
+    elements = np.empty((m, 3), int)
+    elements[:, 0], elements[:, 1], elements[:, 2] = np.arange(m), np.arange(m, 2 * m), after
+    return elements
 
 
 def runs(mesh: Mesh, in_zone: BoolArray) -> Iterator[tuple[IntArray, bool]]:
     """Unbroken pieces of a zone: their elements in order, and whether the piece closes on itself."""
-    after = mesh.elements[:, 2]
-    before = mesh.before
-    left = in_zone.copy()
-    starts = [*np.flatnonzero(in_zone & ~in_zone[before]), *np.flatnonzero(in_zone)]
-    for start in starts:
+    after, left = mesh.elements[:, 2].tolist(), in_zone.tolist()
+    for start in (*np.flatnonzero(in_zone & ~in_zone[mesh.before]).tolist(), *np.flatnonzero(in_zone).tolist()):
         if not left[start]:
             continue
         run, element = [], start
@@ -291,4 +306,4 @@ def runs(mesh: Mesh, in_zone: BoolArray) -> Iterator[tuple[IntArray, bool]]:
             left[element] = False
             run.append(element)
             element = after[element]
-        yield np.array(run), bool(element == start)
+        yield np.array(run), element == start

@@ -38,6 +38,9 @@ def derivatives(xi: Array) -> Array:
     return np.stack([np.ones_like(xi), xi, xi * xi], axis=-1) @ DERIVATIVE_MONOMIALS.T
 
 
+DERIVATIVES_AT_NODES = derivatives(NODES)
+"""dN_k/dξ (3, 3) at each node."""
+
 TOLERANCE = 1e-14
 """Error of one integral over one element, relative to integrals of order one."""
 
@@ -58,6 +61,15 @@ def gauss_legendre(order: int) -> tuple[Array, Array]:
     xi.setflags(write=False)
     weights.setflags(write=False)
     return xi, weights
+
+
+@lru_cache(maxsize=4)
+def half_rule(order: int) -> tuple[Array, Array]:
+    """dN_k/dξ (2 order, 3) at the Gauss points of both halves of the element, and the weights (order,), read-only."""
+    xi, weights = gauss_legendre(order)
+    slopes = derivatives(np.concatenate([xi / 2 - 0.5, xi / 2 + 0.5]))
+    slopes.setflags(write=False)
+    return slopes, weights
 
 
 def bernstein_parameter(root: ComplexArray) -> Array:

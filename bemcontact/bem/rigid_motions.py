@@ -1,11 +1,11 @@
 """Rigid motions of one body, those that no condition prevents, and their names."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, successive
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
@@ -50,7 +50,10 @@ class RigidMotions:
         """Displacement (..., 2, k) of each motion at points (..., 2) [L]."""
         x = (points - self.center) / self.radius
         a, b, c = self.coefficients.T
-        return np.stack([a - c * x[..., 1:], b + c * x[..., :1]], axis=-2)
+        displacement = np.empty((*points.shape, len(self)))
+        displacement[..., 0, :] = a - c * x[..., 1:]
+        displacement[..., 1, :] = b + c * x[..., :1]
+        return displacement
 
     def along_normals(self, points: ContactPoints) -> Array:
         """R (n, k): the motions of contact points along the rigid normals."""
@@ -58,9 +61,18 @@ class RigidMotions:
 
     def gap_changes(self, pressures: UnitPressures, mesh: Mesh, points: int) -> Array:
         """R (n, k): the changes of all gaps by the motions of a body with this mesh."""
-        changes = np.zeros((points, len(self)))
-        moved = np.einsum("rx,rxk->rk", pressures.change, self.displacement(mesh.nodes[pressures.node]))
-        np.add.at(changes, pressures.gap, moved)
+        return self.unit_changes(pressures, mesh, points) @ self.coefficients.T
+
+    def unit_changes(self, pressures: UnitPressures, mesh: Mesh, points: int) -> Array:
+        """Changes (n, 3) of all gaps by the motions with a, b or c of one, the other two zero, of a body."""
+        x, y = ((mesh.nodes[pressures.node] - self.center) / self.radius).T
+        along_x, along_y = pressures.change.T
+        moved = np.stack([along_x, along_y, along_y * x - along_x * y], axis=1)
+        changes, at = np.zeros((points, 3)), successive(pressures.gap)
+        if isinstance(at, slice):
+            changes[at] = moved
+        else:
+            np.add.at(changes, at, moved)
         return changes
 
     def work(self, points: Array, forces: Array) -> Array:
@@ -112,18 +124,24 @@ def free_rigid_motions(mesh: Mesh, held: BoundaryValues, radius: float | None = 
 
     The radius is that of the mesh if none is given.
     """
-    every = all_rigid_motions(mesh) if radius is None else replace(all_rigid_motions(mesh), radius=radius)
-    rows = np.vstack([every.displacement(mesh.nodes)[held.displacement_given], _stretched(every, mesh, held.stiffness)])
+    center, radius = mesh.center, mesh.size / 2 if radius is None else radius
+    every = RigidMotions(coefficients=np.eye(3), center=center, radius=radius)
+    node, axis = np.nonzero(held.displacement_given)
+    rows, across = np.zeros((len(node), 3)), 1 - axis
+    rows[np.arange(len(node)), axis] = 1.0
+    rows[:, 2] = (mesh.nodes[node, across] - center[across]) / radius * (axis - across)
+    if held.stiffness.any():
+        rows = np.concatenate([rows, _stretched(every, mesh, held.stiffness)])
+    if not len(rows):
+        return every
     values, vectors = short_svd(rows)
     free = values <= HELD * max(1.0, values[0])
-    return RigidMotions(coefficients=echelon(vectors[free]), center=every.center, radius=every.radius)
+    return RigidMotions(coefficients=echelon(vectors[free]), center=center, radius=radius)
 
 
 def _stretched(motions: RigidMotions, mesh: Mesh, stiffness: Array) -> Array:
     """Displacement (r, k) along each direction in which a place has springs, however stiff they are."""
     places = stiffness.any(axis=(2, 3))
-    if not places.any():
-        return np.zeros((0, len(motions)))
     size, ways = np.linalg.eigh(stiffness[places])  # (q, 2), (q, 2, 2) with the directions in columns
     along = np.einsum("qxi,qxk->qik", ways, motions.displacement(mesh.nodes[mesh.elements[places]]))
     return along[size > UNSPRUNG * size[:, 1:]]
@@ -135,26 +153,39 @@ def echelon(basis: Array) -> Array:
     A component that is `SLIGHT` in all rows that are left is no pivot: division by it would lose digits. A ring that
     spins about its middle has such a translation, for the middle of its nodes is beside it.
     """
-    rows = basis.copy()
+    rows, size = basis.copy(), _lengths(basis)
     row = 0
     for column in range(basis.shape[1]):
         if row == len(rows):
             break
-        parts = abs(rows[row:, column]) / np.linalg.norm(rows[row:], axis=1)
-        pivot = row + int(parts.argmax())
-        if parts.max() < SLIGHT:
+        left = rows[row:]
+        parts = abs(left[:, column]) / size[row:]
+        pivot = int(parts.argmax())
+        if parts[pivot] < SLIGHT:
             continue
-        rows[[row, pivot]] = rows[[pivot, row]]
+        if pivot:
+            left[[0, pivot]] = left[[pivot, 0]]
         rows[row] /= rows[row, column]
-        others = np.arange(len(rows)) != row
-        rows[others] -= np.outer(rows[others, column], rows[row])
+        factors = rows[:, column].copy()
+        factors[row] = 0.0
+        rows -= factors[:, None] * rows[row]
+        size = _lengths(rows)
         row += 1
-    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
+    return rows / size[:, None]
+
+
+def _lengths(rows: Array) -> Array:
+    """Lengths (k,) of rows (k, components)."""
+    return np.sqrt((rows * rows).sum(axis=1))
 
 
 def short_svd(matrix: Array) -> tuple[Array, Array]:
     """Singular values (k,), zeros included, and right singular vectors (k, k) of a matrix (n, k)."""
-    k = matrix.shape[1]
+    n, k = matrix.shape
     if k == 0:
         return np.zeros(0), np.zeros((0, 0))
-    return np.linalg.svd(np.vstack([matrix, np.zeros((k, k))]), full_matrices=False)[1:]
+    if k == 1:
+        return np.sqrt((matrix * matrix).sum(axis=0)), np.ones((1, 1))
+    if n < k:
+        matrix = np.concatenate([matrix, np.zeros((k - n, k))])
+    return np.linalg.svd(matrix, full_matrices=False)[1:]

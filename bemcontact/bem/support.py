@@ -30,8 +30,10 @@ def each_case(body: Body) -> Iterator[Body]:
 def ensure_held(body: Body) -> None:
     """Refuse loads that contact cannot hold, with the `ProblemError` of `body_of`."""
     try:
-        if violation := body.pinned.violation(body.factors, body.forces, body.problem.units.model_dump()):
-            raise ProblemError(violation + _rest_in_bore(body))
+        if len(body.pinned.motions):
+            units = body.problem.units.model_dump()
+            if violation := body.pinned.violation(body.factors, body.forces, units):
+                raise ProblemError(violation + _rest_in_bore(body))
         _ensure_room_where_held(body)
         _check_support(body)
     except ProblemError as error:
@@ -69,10 +71,9 @@ def _rest_in_bore(body: Body) -> str:
 
 def _ensure_room_where_held(body: Body) -> None:
     """Refuse a surface that lies inside the body where conditions hold it: pressure there would have no bound."""
-    held, problem = body.points.held, body.problem
-    if held is None:
+    held, problem, gap = body.points.held, body.problem, body.held_gaps
+    if held is None or not len(gap):
         return
-    gap = body.held_gaps
     if (depth := -gap.min(initial=0.0)) > HELD_INSIDE * body.mesh.size:
         worst = int(gap.argmin())
         x, y = body.mesh.nodes[held.node[worst]]

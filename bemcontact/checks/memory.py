@@ -4,7 +4,6 @@ Beyond it the libraries of linear algebra end the program with a message of thei
 """
 
 from importlib import import_module
-from importlib.util import find_spec
 
 LEAST_MEMORY = 1_000_000_000
 """Address space in bytes that the program takes without matrices: mostly libraries, and buffers of threads."""
@@ -12,9 +11,10 @@ LEAST_MEMORY = 1_000_000_000
 
 def ensure_memory(matrices: int = 0) -> None:
     """Raise `MemoryError` if the limit of the address space is too small for the program with matrices, in bytes."""
-    if not find_spec("resource"):  # Windows has no such limit
+    try:
+        resource = import_module("resource")
+    except ImportError:  # Windows has no such limit
         return
-    resource = import_module("resource")
     limit, _ = resource.getrlimit(resource.RLIMIT_AS)
     needed = LEAST_MEMORY + matrices
     if limit != resource.RLIM_INFINITY and limit < needed:

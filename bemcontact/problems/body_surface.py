@@ -9,7 +9,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
-from bemcontact.problems.curves import Curve, Edge, Segment, cross
+from bemcontact.problems.curves import Curve, Edge, Segment, cross, inner
 from bemcontact.problems.edge_places import (
     CORNER,
     STEEPEST,
@@ -19,9 +19,9 @@ from bemcontact.problems.edge_places import (
     bent_joints,
     curvatures,
     nearest_on,
+    normals_at,
     paired_on,
     places_along,
-    places_at,
 )
 from bemcontact.problems.rigid_surface import RigidSurface, Shape
 from bemcontact.problems.surface_lines import Closest, Faces, between_normals, pressed_normals, ridge_beside, sees_ridge
@@ -157,14 +157,16 @@ class BodySurface:
         for end in (0, 1):
             at_corner |= (abs(fraction - end) <= ROUND_OFF) & corners[number, end]
             at = np.flatnonzero((fraction == end) & corners[number, end])
+            if not len(at):
+                continue
             tilted = abs(cross(offset[at], normals[at])) > AT_END * away[at]
             at = at[tilted & (away[at] > flush)]
-            outward = np.sum(offset[at] * sums[number[at], end], axis=1)
+            outward = inner(offset[at], sums[number[at], end])
             behind = outward < -AT_END * away[at]  # straight on from an end is not inside
             behind[behind] = ~self._outside(points[at[behind]])
             side = np.where(behind, -1.0, 1.0)
             normals[at], corner[at] = side[:, None] * offset[at] / away[at, None], True
-        return Feet(number, fraction, foot, np.sum(offset * normals, axis=1), normals, corner, at_corner)
+        return Feet(number, fraction, foot, inner(offset, normals), normals, corner, at_corner)
 
     def _outside(self, points: Array) -> BoolArray:
         """Whether points (k, 2) are outside the body, for an end of some of its edges does not tell."""
@@ -190,16 +192,17 @@ class BodySurface:
         own_normals = -first.normals if inward is None else inward
         feet = self.feet(points)
         flush = ROUND_OFF * max(edge.length for edge in (*self.first, *self.edges))
-        on_first = np.hypot(*(points + moved - first.points).T) <= flush
+        on_first = magnitudes(points + moved - first.points) <= flush
         start, away = self._facing(points, own_normals, feet)
-        at = np.flatnonzero(on_first & (np.sum(own_normals * start.normals, axis=1) > 0))
+        at = np.flatnonzero(on_first & (inner(own_normals, start.normals) > 0))
         nearest = EdgePlaces(start.edge[at], start.fraction[at], start.points[at], start.normals[at])
         places, normals, paired = paired_on(self.edges, nearest, points[at], own_normals[at], self._weights)
         at = at[paired]
-        gap, beside = np.sum((points[at] - places.points) * normals, axis=1), places.points - start.points[at]
-        near = np.hypot(*beside.T) <= WIDEST * (abs(away[at]) + flush)
-        own, other = curvatures(self.first, first)[at], curvatures(self.edges, places)
-        near &= np.sum(own_normals[at] * places.normals, axis=1) > STEEPEST + TIE
+        gap, beside = inner(points[at] - places.points, normals), places.points - start.points[at]
+        near = magnitudes(beside) <= WIDEST * (abs(away[at]) + flush)
+        firsts = EdgePlaces(first.edge[at], first.fraction[at], first.points[at], first.normals[at])
+        own, other = curvatures(self.first, firsts), curvatures(self.edges, places)
+        near &= inner(own_normals[at], places.normals) > STEEPEST + TIE
         # otherwise common normals cross on the way
         near &= (1 + self.share * own * gap > 0) & (1 + (1 - self.share) * other * gap > 0)
         edge, fraction, foot = feet.edge.copy(), feet.fraction.copy(), feet.points.copy()
@@ -215,8 +218,9 @@ class BodySurface:
         the nearest one of those that face the normals `inward` (k, 2) into the body of the points, if there is any.
         """
         edge, fraction, gap, places = feet.edge.copy(), feet.fraction.copy(), feet.gap.copy(), feet.points.copy()
-        normals = places_at(self.edges, edge, fraction).normals
-        astray = np.flatnonzero(np.sum(inward * normals, axis=1) <= TIE)
+        normals, corner = feet.normals.copy(), feet.corner
+        normals[corner] = normals_at(self.edges, edge[corner], fraction[corner])
+        astray = np.flatnonzero(inner(inward, normals) <= TIE)
         least = np.full(len(astray), np.inf)
         for number in range(len(self.edges) if len(astray) else 0):
             there = nearest_on(self.edges[number : number + 1], points[astray])

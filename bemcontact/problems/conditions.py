@@ -85,7 +85,11 @@ class Field(SpecModel):
     def at(self, points: Array, along: "Along | None" = None) -> Array:
         """Values (k,) at points (k, 2) [L]; of a table at their places along the edge."""
         x, y = np.asarray(points, float).T
-        value = self.constant + self.x * x + self.y * y + self.xx * x * x + self.xy * x * y + self.yy * y * y
+        value = np.full(len(x), self.constant)
+        if self.x or self.y:
+            value += self.x * x + self.y * y
+        if self.xx or self.xy or self.yy:
+            value += self.xx * x * x + self.xy * x * y + self.yy * y * y
         return value if not self.along else value + _in_table(self.along, along)
 
 
@@ -435,3 +439,8 @@ class Loads(SpecModel):
     """The centrifugal load of steady rotation."""
     temperature: Temperature | None = None
     """A change of temperature."""
+
+    @property
+    def given(self) -> bool:
+        """Whether there is one of them."""
+        return not (self.gravity is None and self.centrifugal is None and self.temperature is None)

@@ -58,8 +58,11 @@ class Segment:
 
     def at(self, fractions: Array) -> Array:
         """Points (k, 2) at fractions (k,) of the arc length."""
-        start, end = np.array(self.start), np.array(self.end)
-        return start + fractions[:, None] * (end - start)
+        (x, y), (x_end, y_end) = self.start, self.end
+        points = np.empty((len(fractions), 2))
+        points[:, 0] = x + fractions * (x_end - x)
+        points[:, 1] = y + fractions * (y_end - y)
+        return points
 
     def tangent_angle(self, fractions: Array) -> Array:
         """Angle (k,) of the direction of travel to the x axis in radians."""
@@ -103,7 +106,10 @@ class CircularArc:
         """Points (k, 2) at fractions (k,) of the arc length."""
         theta = self.start_angle + fractions * self.sweep
         radius = self.radii[0] + fractions * (self.radii[1] - self.radii[0])
-        return np.array(self.center) + radius[:, None] * np.column_stack([np.cos(theta), np.sin(theta)])
+        points = np.empty((len(theta), 2))
+        points[:, 0] = self.center[0] + radius * np.cos(theta)
+        points[:, 1] = self.center[1] + radius * np.sin(theta)
+        return points
 
     def tangent_angle(self, fractions: Array) -> Array:
         """Angle (k,) of the direction of travel to the x axis in radians, continuous along the arc."""
@@ -290,11 +296,14 @@ class Edge:
     def directions(self, fractions: Array) -> Array:
         """Unit tangents (k, 2) at fractions (k,) of the arc length; the body is on their left."""
         angle = self.curve.tangent_angle(np.asarray(fractions, float))
-        return np.column_stack([np.cos(angle), np.sin(angle)])
+        directions = np.empty((len(angle), 2))
+        np.cos(angle, out=directions[:, 0])
+        np.sin(angle, out=directions[:, 1])
+        return directions
 
     def normals(self, fractions: Array) -> Array:
         """Outward unit normals (k, 2) at fractions (k,) of the arc length."""
-        return self.directions(fractions)[:, ::-1] * (1.0, -1.0)
+        return right_of(self.directions(fractions))
 
     @cached_property
     def _coarse_breakpoints(self) -> Array:
@@ -336,9 +345,21 @@ def _chords(sweep: float) -> int:
     return int(degrees(abs(sweep))) + 1
 
 
+def right_of(directions: Array) -> Array:
+    """Vectors (k, 2) a quarter turn clockwise from directions (k, 2)."""
+    normals = directions[:, ::-1].copy()
+    normals[:, 1] *= -1
+    return normals
+
+
 def cross(one: Array, other: Array) -> Array:
     """Component z of the cross product of vectors (..., 2)."""
     return one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
+
+
+def inner(one: Array, other: Array) -> Array:
+    """Inner product of vectors (..., 2)."""
+    return one[..., 0] * other[..., 0] + one[..., 1] * other[..., 1]
 
 
 def unit_vector(angle: float) -> Pair:

@@ -1,12 +1,12 @@
 """Places on edges: those nearest to points, and those that share a normal with points of another boundary."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
-from bemcontact.problems.curves import Edge, Segment, cross
+from bemcontact.problems.curves import Edge, Segment, cross, inner, right_of
 
 STEEPEST = 0.5
 """Cosine of the angle between two boundaries from which they may form pairs: small displacements close no wider one."""
@@ -52,11 +52,27 @@ class EdgePlaces(NamedTuple):
 
 def places_at(edges: Sequence[Edge], edge: IntArray, fraction: Array) -> EdgePlaces:
     """Places at fractions (k,) of the length of edges with these numbers (k,)."""
-    points, normals = np.empty((2, len(edge), 2))
-    for i in sorted({*edge.tolist()}):
-        on = edge == i
-        points[on], normals[on] = edges[i].points(fraction[on]), edges[i].normals(fraction[on])
-    return EdgePlaces(edge, fraction, points, normals)
+    points = np.empty((len(edge), 2))
+    for i, on in _by_edge(edge):
+        points[on] = edges[i].points(fraction[on])
+    return EdgePlaces(edge, fraction, points, normals_at(edges, edge, fraction))
+
+
+def normals_at(edges: Sequence[Edge], edge: IntArray, fraction: Array) -> Array:
+    """Outward unit normals (k, 2) at fractions (k,) of the length of edges with these numbers (k,)."""
+    normals = np.empty((len(edge), 2))
+    for i, on in _by_edge(edge):
+        normals[on] = edges[i].normals(fraction[on])
+    return normals
+
+
+def _by_edge(edge: IntArray) -> Iterator[tuple[int, IntArray | slice]]:
+    """Each of the numbers (k,), and where it is."""
+    numbers = sorted({*edge.tolist()})
+    if len(numbers) == 1:
+        yield numbers[0], slice(None)
+    else:
+        yield from ((i, np.flatnonzero(edge == i)) for i in numbers)
 
 
 def places_along(edges: Sequence[Edge]) -> EdgePlaces:
@@ -69,16 +85,17 @@ def nearest_on(edges: Sequence[Edge], points: Array) -> EdgePlaces:
     """Places of edges that are nearest to points (k, 2) [L]."""
     fractions = np.array([edge.curve.nearest(points) for edge in edges])
     places = np.array([edge.points(at) for edge, at in zip(edges, fractions, strict=True)])
-    number = magnitudes(points - places).argmin(axis=0)
-    return places_at(edges, number, fractions[number, np.arange(len(points))])
+    number, rows = magnitudes(points - places).argmin(axis=0), np.arange(len(points))
+    fraction = fractions[number, rows]
+    return EdgePlaces(number, fraction, places[number, rows], normals_at(edges, number, fraction))
 
 
 def curvatures(edges: Sequence[Edge], places: EdgePlaces) -> Array:
     """Curvature (k,) [1/L] of edges at places, positive where the body is convex."""
     found = np.empty(len(places.edge))
-    for i in sorted({*places.edge.tolist()}):
-        on, curve = places.edge == i, edges[i].curve
-        at, ahead = places.fraction[on], np.where(places.fraction[on] > 0.5, -AHEAD, AHEAD)
+    for i, on in _by_edge(places.edge):
+        at, curve = places.fraction[on], edges[i].curve
+        ahead = np.where(at > 0.5, -AHEAD, AHEAD)
         found[on] = (curve.tangent_angle(at + ahead) - curve.tangent_angle(at)) / (ahead * curve.length)
     return found
 
@@ -158,10 +175,10 @@ def paired_on(
         rows = np.flatnonzero(~met if other is None else ~met & (start.edge != other))
         if other is not None and len(rows):
             edge[rows], fraction[rows] = other, edges[other].curve.nearest(start.points[rows])
-        for i in sorted({*edge[rows].tolist()}):
-            on = rows[edge[rows] == i]
-            fraction[on], met[on] = _on_edge(edges[i], fraction[on], points[on], weighted[on], other_weight)
-            met[on] &= np.sum(own[on] * edges[i].normals(fraction[on]), axis=1) > 0
+        for i, some in _by_edge(edge[rows]) if len(rows) else ():
+            on = rows[some]
+            fraction[on], on_normal = _on_edge(edges[i], fraction[on], points[on], weighted[on], other_weight)
+            met[on] = on_normal & (inner(own[on], edges[i].normals(fraction[on])) > 0)
     found = places_at(edges, edge[met], fraction[met])
     return found, _common(weighted[met], found.normals, other_weight.at(found.points)), met
 
@@ -169,24 +186,28 @@ def paired_on(
 def _common(own: Array, other: Array, weight: Array) -> Array:
     """Common unit normals (k, 2) of weighted ones and of others with weights; the latter where both are opposite."""
     mean = own + weight[:, None] * other
-    size = np.hypot(*mean.T)[:, None]
+    size = magnitudes(mean)[:, None]
+    if size.all():
+        return mean / size
     return np.where(size > 0, mean / np.where(size > 0, size, 1.0), other)
 
 
 def _on_edge(edge: Edge, fraction: Array, points: Array, own: Array, weight: NormalWeight) -> tuple[Array, BoolArray]:
     """Fractions (k,) of pairs on an edge by Newton's method, and which of them are pairs."""
-    fraction, left = fraction.copy(), np.arange(len(points))
+    fraction, left, length = fraction.copy(), np.arange(len(points)), edge.length
     for _ in range(STEPS):
-        at, ahead = fraction[left], np.where(fraction[left] > 0.5, -AHEAD, AHEAD)
+        at, mine = fraction[left], own[left]
+        ahead, k = np.where(at > 0.5, -AHEAD, AHEAD), len(at)
         both = np.concatenate([at, at + ahead])
-        (places, there), along = np.split(edge.points(both), 2), edge.directions(both)
-        (other, turned), offset = np.split(along[:, ::-1] * (1.0, -1.0), 2), points[left] - places
-        common = _common(own[left], other, weight.at(places))
-        turn = cross(common, _common(own[left], turned, weight.at(there))) / ahead
-        rate = cross(common, along[: len(at)]) * edge.length + turn * np.sum(common * offset, axis=1)
-        most = LARGEST_TURN * AHEAD / np.maximum(abs(cross(other, turned)), LARGEST_TURN * AHEAD)
-        step = np.clip(cross(common, offset) / np.where(rate == 0, np.inf, rate), -most, most)
-        moved = (at + step) % 1.0 if edge.start == edge.end else np.clip(at + step, 0.0, 1.0)
+        places, along = edge.points(both), edge.directions(both)
+        normals, offset, weights = right_of(along), points[left] - places[:k], weight.at(places)
+        common = _common(mine, normals[:k], weights[:k])
+        turn = cross(common, _common(mine, normals[k:], weights[k:])) / ahead
+        rate = cross(common, along[:k]) * length + turn * inner(common, offset)
+        most = LARGEST_TURN * AHEAD / np.maximum(abs(cross(normals[:k], normals[k:])), LARGEST_TURN * AHEAD)
+        rate[rate == 0] = np.inf
+        step = np.minimum(np.maximum(cross(common, offset) / rate, -most), most)
+        moved = (at + step) % 1.0 if edge.start == edge.end else np.minimum(np.maximum(at + step, 0.0), 1.0)
         fraction[left] = moved
         left = left[abs(moved - at) > SETTLED]
         if not len(left):

@@ -126,9 +126,18 @@ class SmoothSurface(LineSurface):
         """Gap and normal at points (k, 2) [L]."""
         raise NotImplementedError
 
-    def faces_as_drawn(self, points: Array, inward: Array, reach: Array) -> Faces:
+    def held(self, points: Array) -> Closest:
+        """Gap and normal of the face that holds both sides of points (k, 2) [L], after the way as of `Faces`."""
+        way = self.way
+        gap, normals = self.closest(way.back(points))
+        if way == AS_DRAWN:
+            return Closest(gap, normals)
+        normals = way.turned(normals)
+        return Closest(gap + np.einsum("kx,kx->k", normals, way.motion_at(points)), normals)
+
+    def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
         """The nearest face holds both sides of points (k, 2) [L]."""
-        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in self.closest(points))
+        gap, normals = (part[:, None].repeat(3, axis=1) for part in self.held(np.asarray(points, float)))
         return Faces(gap, normals, normals)
 
 

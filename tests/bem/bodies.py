@@ -6,7 +6,7 @@ import numpy as np
 
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.loading import Loading, particular_solution
-from bemcontact.bem.mesh import Mesh, connected
+from bemcontact.bem.mesh import Mesh, elements_of_loops
 from bemcontact.bem.rigid_motions import RigidMotions, all_rigid_motions, free_rigid_motions
 from bemcontact.bem.solution import solve_system
 from bemcontact.bem.system import System
@@ -42,7 +42,13 @@ def mesh_of(*loops: Sequence[tuple[str, Curve, Sequence[float]]]) -> Mesh:
             middles.append(curve((ends[:-1] + ends[1:]) / 2))
             edges += [name] * (len(ends) - 1)
         after += [*range(first + 1, len(edges)), first]
-    return connected(np.vstack(starts), np.vstack(middles), np.array(after), edges)
+    numbers = {name: number for number, name in enumerate(dict.fromkeys(edges))}
+    return Mesh(
+        nodes=np.vstack([*starts, *middles]),
+        elements=elements_of_loops(np.array(after)),
+        edge=np.array([numbers[name] for name in edges]),
+        edge_names=tuple(numbers),
+    )
 
 
 def rectangle(width: float, height: float, along: Sequence[float], across: Sequence[float]) -> list:
