@@ -161,7 +161,7 @@ def _faces(outline: Outline, surface: AnySurface, deflection: Array | None) -> _
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in surface.behind(deflection))
         held = Faces(gap, normals, normals)
     else:
-        held = surface.faces(outline.mesh.nodes, *outline.sides)
+        held = outline.held_nodes(surface)
     other = magnitudes(held.normals - held.normals[:, [2, 0, 0]]) > ALIKE
     return _NodeFaces(*held, other | (abs(held.gap - held.gap[:, [2, 0, 0]]) > ALIKE * outline.mesh.size))
 

@@ -126,10 +126,16 @@ class SmoothSurface(LineSurface):
         """Gap and normal at points (k, 2) [L]."""
         raise NotImplementedError
 
-    def faces_as_drawn(self, points: Array, inward: Array, reach: Array) -> Faces:
-        """The nearest face holds both sides of points (k, 2) [L]."""
-        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in self.closest(points))
-        return Faces(gap, normals, normals)
+    def faces(self, points: Array, inward: Array | None = None, reach: Array | None = None) -> Faces:
+        """The nearest face holds both sides of points (k, 2) [L], whatever the normals of the boundary there."""
+        points, way = np.asarray(points, float), self.way
+        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in self.closest(way.back(points)))
+        return Faces(gap, normals, normals).after(way, points)
+
+    def after(self, way: Way) -> Self:
+        """Copy after another motion beside the body; both remember the places that are nearest to either."""
+        assert self.nearest is not None  # made before it is shared
+        return super().after(way)
 
 
 class Polyline(LineSurface):
