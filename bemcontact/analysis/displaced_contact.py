@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes, scalar_products
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import ALIKE, SMOOTH, ContactPoints
 from bemcontact.bem.free_motions import steps_of_surfaces
@@ -56,9 +56,9 @@ def displaced(
         body = surface if isinstance(surface, BodySurface) and surface.elastic else None
         places, opposite = at[own] + displacement[own], points.opposite.node[own]
         there, has = gaps.exact(zone, places), opposite >= 0
-        face, along = points.faces[own], np.sum(there.normals * contact.normals[own], axis=-1)
+        face, along = points.faces[own], scalar_products(there.normals, contact.normals[own])
         ridge = (magnitudes(face - contact.normals[own]) > ALIKE) & (along > STEEP)
-        other = ~ridge & (np.sum(there.normals * face, axis=-1) < SAME_FACE)
+        other = ~ridge & (scalar_products(there.normals, face) < SAME_FACE)
         moved, distance = of_nodes[opposite], there.gap
         if body and body.share in FLAT and solution.pressure[own].any():
             carried = _carried_along(gaps, zone, points, contact, solution.pressure, displacement[own] - moved)

@@ -60,15 +60,15 @@ class Outline:
         narrower than an element would be between them.
         """
         fractions, step = self.mesh.fractions, SAMPLES[-1] / NODES[1]
-        local, taken = np.tile(SAMPLES, (len(fractions), 1)), np.zeros((len(fractions), len(SAMPLES)))
+        local, taken, moved = np.tile(SAMPLES, (len(fractions), 1)), np.zeros((len(fractions), len(SAMPLES))), False
         taken[:, NODES] = np.inf
         zones = [(zone.surface, self.problem.edges_of(name)) for name, zone in self.problem.zones.items()]
         for number, edge in enumerate(self.edges):
             for surface, touching in zones:
-                places = np.array([*_narrow_places(edge, surface, paired=edge.name in touching)], float)
-                if not len(places):
+                found = tuple(_narrow_places(edge, surface, paired=edge.name in touching))
+                if not found:
                     continue
-                own = np.flatnonzero(self.mesh.edge == number)
+                places, own, moved = np.array(found, float), np.flatnonzero(self.mesh.edge == number), True
                 elements = own[np.minimum(np.searchsorted(fractions[own, 2], places), len(own) - 1)]
                 first, _, last = fractions[elements].T
                 xi = (2 * (places - first) / (last - first) - 1)[:, None]
@@ -77,7 +77,7 @@ class Outline:
                     distance = away[i] + taken[element]
                     if distance[at := distance.argmin()] < 2 * step:
                         local[element, at], taken[element, at] = xi[i, 0], np.inf
-        return np.sort(local, axis=1)
+        return np.sort(local, axis=1) if moved else local
 
     @cached_property
     def shapes(self) -> Array:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes, scalar_products
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
 from bemcontact.bem.boundary_values import BoundaryState
@@ -154,7 +154,7 @@ class SurfaceGaps(DisplacedSurfaces):
         held = outline.faces(surface, elements)
         if isinstance(surface, BodySurface) or self.way_of_tool(zone) != AS_DRAWN:
             moved = moved - self.tool_motion(zone, outline.sampled(elements), outline.inward(elements))
-        return held._replace(gap=held.gap + np.sum(held.normals * moved, axis=-1))
+        return held._replace(gap=held.gap + scalar_products(held.normals, moved))
 
     def _against(self, zone: str, elements: IntArray) -> Array:
         """Displacement (k, q, 2) [L] of elements (k,) beside that of the surface, where they come to touch it."""
@@ -190,7 +190,8 @@ class SurfaceGaps(DisplacedSurfaces):
                 depths = self._depth_in_own(zone, elements)
             else:
                 depths, behind[elements], hidden, local = self._depth_in_other(zone, elements, ends)
-                depths[self._beside_corner(zone, elements)] = -np.inf
+                if (depths > 0).any():
+                    depths[self._beside_corner(zone, elements)] = -np.inf
             deepest = depths.argmax(axis=1)
             depth[elements], xi[elements] = (part[np.arange(len(elements)), deepest] for part in (depths, local))
         excused = ~paired & (depth <= self.second_order(zone))
@@ -207,10 +208,12 @@ class SurfaceGaps(DisplacedSurfaces):
         touching = nodes.min(axis=2) <= TOUCHES * nodes.max(axis=2)
         shapes = self.outline.shapes[elements]
         dip = np.maximum(-np.sum(shapes * np.where(self._same(zone, here), nodes, 0.0), axis=2), 0.0) * touching
-        other = np.sum(here.faces * there.normals, axis=-1) < SAME_FACE
-        beyond = other & (-there.gap > self.second_order(zone)) & ~self._beside_corner(zone, elements)
-        beyond &= ~self._beside_own_corner(zone, elements)
-        return np.maximum(-here.gap - dip, np.where(beyond, -there.gap, -np.inf))
+        depth, other = -here.gap - dip, scalar_products(here.faces, there.normals) < SAME_FACE
+        beyond = other & (-there.gap > self.second_order(zone))
+        if beyond.any():
+            beyond &= ~(self._beside_corner(zone, elements) | self._beside_own_corner(zone, elements))
+            depth = np.maximum(depth, np.where(beyond, -there.gap, -np.inf))
+        return depth
 
     def _beside_corner(self, zone: str, elements: IntArray) -> BoolArray:
         """Whether places (k, q) of elements (k,) are nearer to a corner of a surface than they move, which is little.
@@ -269,7 +272,7 @@ class SurfaceGaps(DisplacedSurfaces):
         outside, turned = np.ones((2, *before.shape), bool)
         behind, crossings = np.zeros(len(elements), bool), ()
         if (before < -flush).any():
-            turned = np.sum(self.outline.inward(elements) * normals, axis=-1) > TURNED
+            turned = scalar_products(self.outline.inward(elements), normals) > TURNED
             snug, mesh = self._fits(zone, elements, before, turned)[:, None], self.outline.mesh
             behind = np.any((before < -flush) & ~snug, axis=1)
             here = self._mask(elements[behind])
@@ -278,9 +281,9 @@ class SurfaceGaps(DisplacedSurfaces):
             crossings = self._crossings(zone, elements, np.where(snug, np.inf, before), crosses, flush)
         if isinstance(surface, BodySurface):  # linear: beside an end of contact places slide along it
             against = self._against(zone, elements)
-            along = self._normals_beside_end(zone, places, against, normals)
-            after = before + np.sum(along * against, axis=-1)
-            outside &= ~self._slides(zone, surface, places)
+            after = before + scalar_products(self._normals_beside_end(zone, places, against, normals), against)
+            if (after < 0).any():
+                outside &= ~self._slides(zone, surface, places)
         else:
             after = self.exact(zone, self.moved(elements)).gap
         depth, local = np.where(outside, -after, -np.inf), self.outline.local[elements]
