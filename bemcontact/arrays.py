@@ -90,6 +90,11 @@ def magnitudes(vectors: Array) -> Array:
     return np.hypot(vectors[..., 0], vectors[..., 1])
 
 
+def scalar_products(one: Array, other: Array) -> Array:
+    """Scalar products (...) of vectors (..., 2): a sum over an axis of two takes several times longer."""
+    return one[..., 0] * other[..., 0] + one[..., 1] * other[..., 1]
+
+
 def successive(index: IntArray) -> IntArray | slice:
     """A slice where indices follow each other, with which NumPy adds several times faster."""
     if len(index) and (index[1:] - index[:-1] == 1).all():

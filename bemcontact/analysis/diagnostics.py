@@ -109,11 +109,14 @@ def nearly_balanced(contact: CondensedContact, solution: ContactSolution) -> Ite
 
     Pressure of a fit, by interference or heat, balances itself and does not depend on this difference.
     """
+    net_load = contact.net_load
+    if not 0 < net_load < SMALL_NET_LOAD:
+        return
     carried = np.abs(contact.equilibrium).T @ solution.pressure
-    if 0 < contact.net_load < SMALL_NET_LOAD and np.any(carried <= OF_A_FIT * np.abs(contact.motion_load)):
+    if np.any(carried <= OF_A_FIT * np.abs(contact.motion_load)):
         yield (
             f"the loads nearly balance: the net load along the {' and the '.join(contact.motion_names)} is "
-            f"{contact.net_load:.1g} of the sum of their magnitudes, and contact carries only that; errors of this "
+            f"{net_load:.1g} of the sum of their magnitudes, and contact carries only that; errors of this "
             "size in the loads change the contact entirely"
         )
 
@@ -126,10 +129,10 @@ def hardly_held(
     One without any slope has another note if motions are `undetermined`.
     """
     motions = body.seen.coefficients  # (k, 3 + 3 t): x, y and turn of the body, then of tools
-    moved = np.linalg.qr(motions.T @ unseen_ways(motions[:, 2:].T, LEVEL))[0]  # pure translations of the body
-    if not touching.any() or not moved.size:
+    if not touching.any() or not (ways := unseen_ways(motions[:, 2:].T, LEVEL)).size:
         return
-    changes = contact.rigid_motions[touching] @ np.linalg.lstsq(motions.T, moved)[0]
+    moved, sizes = np.linalg.qr(motions.T @ ways)  # pure translations of the body
+    changes = np.linalg.solve(sizes.T, (contact.rigid_motions[touching] @ ways).T).T
     least = np.linalg.svd(changes, full_matrices=False)[2][-1]  # the translation that changes gaps least
     slope = float(np.abs(changes @ least).max())
     if slope <= SLOPE and not (slope <= LEVEL and undetermined):
@@ -213,20 +216,24 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     A zone that ends opposite to a corner of the other body ends as that body does. It does not end at a bond with a
     body beside it that has a zone there, too.
     """
-    mesh, points, angles = body.mesh, body.points, body.mesh.inner_angles
-    in_zone, ends = points.in_zone, np.zeros(len(mesh.nodes), bool)
+    mesh, points, in_zone = body.mesh, body.points, body.points.in_zone
+    ends = np.zeros(len(mesh.nodes), bool)
     ends[: len(in_zone)] = in_zone != in_zone[mesh.before]
-    beyond = np.where(in_zone, mesh.before, np.arange(len(in_zone)))
-    free = np.all(~body.acting.values.traction_unknown[beyond], axis=1)
-    for i in np.flatnonzero(touching & ends[points.node]):
-        node, other = points.node[i], points.opposite.node[i]
+    for i in np.flatnonzero(touching & ends[points.node]).tolist():
+        node, other, angles = points.node[i], points.opposite.node[i], mesh.inner_angles
+        smooth = abs(angles[node] - np.pi) < CORNER
+        if not smooth and (
+            angles[node] <= np.pi / 2 + CORNER
+            or body.acting.values.traction_unknown[mesh.before[node] if in_zone[node] else node].any()
+        ):
+            continue
         if other >= 0 and abs(angles[other] - np.pi) >= CORNER:
             continue
-        if np.isin(points.tied[mesh.elements[in_zone]], points.tied[node]).any(axis=1).sum() > 1:
+        if (points.tied[mesh.elements[in_zone]] == points.tied[node]).any(axis=1).sum() > 1:
             continue
         x, y = mesh.place(mesh.nodes[node])
         reached = f"contact reaches the end of the zone '{_zone(body, i)}' at ({x:.5g}, {y:.5g})"
-        if abs(angles[node] - np.pi) < CORNER:
+        if smooth:
             zone = _zone(body, i)
             if np.isfinite(body.problem.reach_of(zone)):
                 yield f"{reached}, where the boundary goes on smoothly; {longer(body.problem, zone)}"
@@ -235,7 +242,7 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
                 f"{reached}, where the boundary goes on smoothly; {longer(body.problem, zone)}, unless the surface "
                 f"ends there with an edge: then {UNBOUNDED}"
             )
-        elif free[node] and angles[node] > np.pi / 2 + CORNER:
+        else:
             yield f"{reached}, a corner of the body of {np.degrees(angles[node]):.0f} degrees; {UNBOUNDED}"
 
 
@@ -258,10 +265,11 @@ def longer(problem: Problem, zone: str) -> str:
 
 def long_neighbors(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     """Note where contact reaches the end of a zone and the elements beyond it are much longer."""
-    mesh, points = body.mesh, body.points
-    lengths, in_zone = mesh.lengths, points.in_zone
-    for i in np.flatnonzero(touching & (points.node < len(mesh.elements))):
-        after, before = points.node[i], mesh.before[points.node[i]]
+    mesh, points, in_zone = body.mesh, body.points, body.points.in_zone
+    ends = np.flatnonzero(touching & (points.node < len(mesh.elements)))
+    after, before = points.node[ends], mesh.before[points.node[ends]]
+    for i in ends[~(in_zone[after] & in_zone[before])].tolist():
+        after, before, lengths = points.node[i], mesh.before[points.node[i]], mesh.lengths
         outside, inside = (before, after) if in_zone[after] else (after, before)
         if not in_zone[outside] and lengths[outside] > LONG_NEIGHBOR * lengths[inside]:
             (x, y), times = mesh.place(mesh.nodes[points.node[i]]), lengths[outside] / lengths[inside]
@@ -289,6 +297,6 @@ def beyond_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
             )
 
 
-def _zone(body: Body, point: np.intp) -> str:
+def _zone(body: Body, point: int) -> str:
     """Name of the zone of a contact point."""
     return list(body.problem.zones)[body.points.zone[point]]

@@ -146,9 +146,7 @@ def elastic_displacement(body: Body, state: BoundaryState) -> Array:
 
 def _nodal_lengths(mesh: Mesh) -> Array:
     """Length (N,) [L] that belongs to each node."""
-    lengths = np.zeros(len(mesh.nodes))
-    np.add.at(lengths, mesh.elements, mesh.tributary)
-    return lengths
+    return np.bincount(mesh.elements.ravel(), mesh.tributary.ravel()).astype(float)
 
 
 def _waves(mesh: Mesh) -> Array:

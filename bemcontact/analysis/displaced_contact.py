@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes, scalar_products
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import ALIKE, SMOOTH, ContactPoints
 from bemcontact.bem.free_motions import steps_of_surfaces
@@ -45,40 +45,41 @@ def displaced(
     gaps: SurfaceGaps, points: ContactPoints, contact: CondensedContact, solution: ContactSolution
 ) -> Displaced:
     """Compare the gap of contact with the distance after the motion; on another, nearer face the former counts."""
-    at, displacement = contact.points, _at_points(gaps, points)
-    linear = contact.initial_gap + solution.displacement
-    still = np.zeros_like(displacement)
+    at, of_nodes = contact.points, _at_nodes(gaps, points)
+    displacement = of_nodes[points.node]
+    linear, still = contact.initial_gap + solution.displacement, np.zeros_like(displacement)
     found = Displaced(displacement.copy(), np.zeros(len(at)), linear.copy(), np.zeros(len(at), bool), still)
     for number, zone in enumerate(contact.zone_names):
         if zone not in gaps.surfaces:
             continue
-        own = contact.zone == number
-        there = gaps.exact(zone, at[own] + displacement[own])
-        face, along = points.faces[own], np.sum(there.normals * contact.normals[own], axis=-1)
-        ridge = (np.hypot(*(face - contact.normals[own]).T) > ALIKE) & (along > STEEP)
-        other = ~ridge & (np.sum(there.normals * face, axis=-1) < SAME_FACE)
-        other_body, surface, distance = points.opposite.node[own], gaps.surfaces[zone], there.gap
-        across = _at_nodes(gaps, points)[other_body]
-        elastic = isinstance(surface, BodySurface) and surface.elastic
-        if isinstance(surface, BodySurface) and elastic and surface.share in FLAT and solution.pressure[own].any():
-            carried = _carried_along(gaps, zone, points, contact, solution.pressure, displacement[own] - across)
+        own, surface = contact.zone == number, gaps.surfaces[zone]
+        body = surface if isinstance(surface, BodySurface) and surface.elastic else None
+        places, opposite = at[own] + displacement[own], points.opposite.node[own]
+        there, has = gaps.exact(zone, places), opposite >= 0
+        face, along = points.faces[own], scalar_products(there.normals, contact.normals[own])
+        ridge = (magnitudes(face - contact.normals[own]) > ALIKE) & (along > STEEP)
+        other = ~ridge & (scalar_products(there.normals, face) < SAME_FACE)
+        moved, distance = of_nodes[opposite], there.gap
+        if body and body.share in FLAT and solution.pressure[own].any():
+            carried = _carried_along(gaps, zone, points, contact, solution.pressure, displacement[own] - moved)
             distance = np.where(other, there.gap, carried)
         beyond = distance / np.where(ridge, along, 1.0) - linear[own]
-        found.motion[own] -= np.where((other_body < 0)[:, None], gaps.tool_motion(zone, at[own]), across)
-        tip = gaps.beside_groove(zone, at[own], np.hypot(*found.motion[own].T))
-        grooved = (beyond < 0) & (tip | (other & isinstance(gaps.surfaces[zone], Polyline)))
+        found.motion[own] -= moved if has.all() else np.where(has[:, None], moved, gaps.tool_motion(zone, at[own]))
+        tip = gaps.beside_groove(zone, at[own], magnitudes(found.motion[own]))
+        grooved = (beyond < 0) & (tip | (other & isinstance(surface, Polyline)))
         turned = np.where(ridge[:, None], face, there.normals)
-        places = at[own] + displacement[own]
-        turned = turned + gaps.turn_of_normals(zone, places - gaps.tool_motion(zone, places), turned)
+        if body:
+            turned = turned + gaps.turn_of(body, places - gaps.tool_motion(zone, places), turned)
         found.turn[own] = np.where((other | tip)[:, None], 0.0, turned - face)
         found.change[own] = np.where(grooved, 0.0, beyond)
         found.distance[own], found.other[own] = there.gap, other
-        if elastic:
+        if body:
             sure, pressed = own.copy(), contact.pressed(solution.pressure, solution.displacement)
             sure[own] = ~tip
             _see_from_other_side(gaps, zone, points, own, sure, pressed, linear, found)
-    at_tip = _at_tip_of_bond(points, found.motion)
-    found.change[at_tip], found.turn[at_tip], found.other[at_tip] = 0.0, 0.0, False
+    if points.bonded_ends.any():
+        at_tip = _at_tip_of_bond(points, found.motion)
+        found.change[at_tip], found.turn[at_tip], found.other[at_tip] = 0.0, 0.0, False
     return found
 
 
@@ -227,15 +228,16 @@ def _gain_of_levers(gaps: SurfaceGaps, body: Body, part: MeshPart, center: Array
     keeps its moment, and its resultant has another direction. A weight acts on the centroid.
     """
     mesh, own, angle = part.mesh, part.elements, turn_of_body(gaps, part)
-    length, r = mesh.tributary[..., None], gaps.state.points[own] - center
+    length, r, dead = mesh.tributary[..., None], gaps.state.points[own] - center, gaps.state.traction[own]
     following = {edge for edge, held in _conditions(gaps) if held.pressure is not None}
-    with_face = np.array([name in following for name in mesh.edge_names])[mesh.edge][:, None, None]
+    with_face = np.array([name in following for name in mesh.edge_names])[mesh.edge]
+    if not with_face.any():
+        return np.zeros(2), -angle * float(np.sum(length * dead * r))
     prescribed = body.acting.values.traction[own]
     normal = np.sum(prescribed * mesh.normals, axis=-1, keepdims=True) * mesh.normals
-    pressure = np.where(with_face, normal, 0.0)
+    pressure = np.where(with_face[:, None, None], normal, 0.0)
     x, y = np.sum(length * pressure, axis=(0, 1))
-    dead = gaps.state.traction[own] - pressure
-    return angle * np.array([-y, x]), -angle * float(np.sum(length * dead * r))
+    return angle * np.array([-y, x]), -angle * float(np.sum(length * (dead - pressure) * r))
 
 
 def _conditions(gaps: SurfaceGaps) -> Iterator[tuple[str, Condition]]:

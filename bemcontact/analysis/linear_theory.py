@@ -3,12 +3,12 @@
 Error bars compare meshes, and the certificate is of the linear equations. Neither sees an error of the theory.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from bemcontact.analysis.diagnostics import points_in
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, IntArray, magnitudes
 from bemcontact.assessment.footprint import Footprint
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
@@ -17,6 +17,7 @@ from bemcontact.bem.mesh import CORNER, Mesh
 from bemcontact.bem.symmetry import symmetry_lines
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.problems.curves import cross
 from bemcontact.problems.material import Material
 from bemcontact.problems.problem import Problem
 
@@ -59,9 +60,11 @@ def linear_theory(
     body: Body, contact: CondensedContact, solution: ContactSolution, where: Footprint, boundary: BoundaryState
 ) -> Judgment:
     """Judge strains under contact, and displacements of the whole boundary."""
+    turns, change = any("rotation" in name for name in contact.motion_names), RateOfChange.of(boundary)
+    moved = large_displacements(boundary, change, turns, body.problem)
+    if most_strained(body.problem, abs(solution.pressure).max(initial=0.0), change.gradient.max()) <= NOTICED:
+        return moved
     strain, part = contact_strains(body, boundary, solution.pressure)
-    turns = any("rotation" in name for name in contact.motion_names)
-    moved = large_displacements(boundary, turns, _modulus(body.problem))
     beyond = _strained(body, contact, solution, where, strain, part) or moved.beyond
     if beyond is not None:
         return Judgment(beyond)
@@ -74,6 +77,36 @@ def linear_theory(
         f"theory is off by about {100 * strain[i]:.2g} % there; error bars do not include this"
     )
     return Judgment(noticed=(Noticed("strain", float(strain[i]), words), *moved.noticed))
+
+
+class RateOfChange(NamedTuple):
+    """How displacements change along elements: their chords (m, 2) [L], what changes over these (m, 2), per length."""
+
+    along: Array
+    change: Array
+    length: Array
+    gradient: Array
+
+    @classmethod
+    def of(cls, boundary: BoundaryState) -> Self:
+        """That of the state of a boundary."""
+        along, change = (values[:, 2] - values[:, 0] for values in (boundary.points, boundary.displacement))
+        length = magnitudes(along)
+        return cls(along, change, length, magnitudes(change) / length)
+
+
+def most_strained(problem: Problem, pressure: float, gradient: float) -> float:
+    """Bound of what part contact strains are of large ones, from the largest pressure and change per length.
+
+    As of `contact_strains`: shear is below p/E, strain along the boundary below the gradient, and (1 + ν)(1 - 2ν) is at
+    most 9/8.
+    """
+    bounds = list[float]()
+    for material in (part.material for part in problem.parts):
+        sheared, nu = pressure / material.young_modulus, material.poisson_ratio
+        normal = (9 / 8 * sheared + abs(nu) * gradient) / (1 - max(nu, 0.0))
+        bounds += sheared / LARGE, normal / LARGE_STRAIN
+    return max(bounds)
 
 
 def contact_strains(body: Body, boundary: BoundaryState, pressure: Array) -> tuple[Array, Array]:
@@ -120,9 +153,8 @@ def _strains_of(
     E, nu = material.young_modulus, material.poisson_ratio
     along, change = (values[:, 2] - values[:, 0] for values in (points, displacement))
     length = np.hypot(*along.T)
-    of_node, elements = np.zeros((2, len(mesh.nodes)))
-    np.add.at(of_node, mesh.elements, ((along * change).sum(axis=1) / length**2)[:, None])
-    np.add.at(elements, mesh.elements, 1.0)
+    nodes, strain = mesh.elements.ravel(), np.repeat((along * change).sum(axis=1) / length**2, 3)
+    of_node, elements = np.bincount(nodes, strain), np.bincount(nodes)
     tangential = (of_node / np.maximum(elements, 1.0))[at]
     if material.state == "plane_strain":
         normal = -(pressure * (1 + nu) * (1 - 2 * nu) / E + nu * tangential) / (1 - nu)
@@ -182,26 +214,24 @@ def _sharp(body: Body, place: Array) -> str:
     )
 
 
-def large_displacements(boundary: BoundaryState, turns: bool, modulus: str) -> Judgment:
+def large_displacements(boundary: BoundaryState, rate: RateOfChange, turns: bool, problem: Problem) -> Judgment:
     """Find strains, slopes or rotations that are not small on a part of the boundary; translations do not count.
 
-    `turns` is whether contact alone holds the body against rotation.
+    `rate` is that of its displacements, and `turns` whether contact alone holds the body against rotation.
     """
-    along, change = (values[:, 2] - values[:, 0] for values in (boundary.points, boundary.displacement))
-    length = np.hypot(*along.T)
-    gradient = np.hypot(*change.T) / length
-    stretch = abs(np.sum(along * change, axis=1)) / length**2
-    turn = abs(along[:, 0] * change[:, 1] - along[:, 1] * change[:, 0]) / length**2
-    not_small, beyond = gradient > LARGE, np.maximum(stretch / LARGE, turn / LARGE_ROTATION) > 1
-    part, withheld = (length[where].sum() / length.sum() for where in (not_small, beyond))
+    along, change, length, gradient = rate
+    part = length[gradient > LARGE].sum() / length.sum()
     if part <= LARGE_PART:
         return Judgment()
+    stretch = abs(np.sum(along * change, axis=1)) / length**2
+    turn = abs(cross(along, change)) / length**2
+    withheld = length[np.maximum(stretch / LARGE, turn / LARGE_ROTATION) > 1].sum() / length.sum()
     i, largest = int(np.argmax(gradient)), float(gradient.max())
     fact = (
         f"isplacements are not small: on {100 * part:.0f} % of the boundary they change by more than {LARGE:g} of the "
         f"length along it, by strain or rotation, and up to {largest:.2g}"
     )
-    cause = _cause(boundary, turns, modulus)
+    cause = _cause(boundary, turns, _modulus(problem))
     if withheld <= LARGE_PART:
         off = f"linear theory is off by half the square of this, up to {50 * largest**2:.2g} % of lengths there"
         return Judgment(noticed=(Noticed("displacement", largest, f"d{fact}: {off}. {cause.removesuffix('.')}"),))

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from bemcontact.analysis.displaced_contact import Displaced, displaced
-from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
+from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.penetration import Misfit, Penetration, tolerated
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.surface_gaps import SurfaceGaps
@@ -80,8 +80,7 @@ class MovedContact:
     @property
     def allowed(self) -> float:
         """Distance [L] that is tolerated."""
-        largest = float(magnitudes(self.gaps.state.displacement).max())
-        return tolerated(self.contact, largest, self.gaps.problem.size)
+        return tolerated(self.contact, self.gaps.largest, self.gaps.size)
 
     def unheld(self) -> Array:
         """Free motions (k, j) that move no point under pressure: an orthonormal basis."""

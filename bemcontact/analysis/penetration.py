@@ -20,13 +20,12 @@ from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.penetration import ROUND_OFF, Misfit, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.body import Body
-from bemcontact.bem.mesh import runs
 from bemcontact.bem.second_side import Inside, deepest_inside
 from bemcontact.bem.surface_gaps import FaceEnd, SurfaceGaps, surface_gaps
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.parametric.path import LoadPath
-from bemcontact.problems.loops import contains, first_meeting, signed_area
+from bemcontact.problems.loops import contains, first_meeting, signed_area, winds_once
 from bemcontact.problems.problem import Problem
 
 DETAIL = 1e-4
@@ -72,9 +71,8 @@ def penetration(
     Of a state on a path, `nearby` (2, zones) is the least and the largest peak [p] of each zone a little before and
     after it.
     """
-    state, worst, notes = gaps.state, None, list[str]()
-    largest = float(magnitudes(state.displacement).max())
-    allowed = tolerated(contact, largest, gaps.problem.size)
+    worst, notes = None, list[str]()
+    allowed = tolerated(contact, gaps.largest, gaps.size)
     for zone in gaps.surfaces:
         found, paired = gaps.intrusion(zone), gaps.paired[zone]
         depth = float(found.depth.max())
@@ -100,7 +98,8 @@ def _through_itself(gaps: SurfaceGaps, body: Body) -> Penetration | None:
     A thin hole may turn inside out as a whole, and cross nowhere.
     """
     state, mesh = gaps.state, gaps.outline.mesh
-    loops = [elements for elements, _ in runs(mesh, np.ones(len(mesh.elements), bool))]
+    every, after = np.arange(len(mesh.elements)), mesh.elements[:, 2]
+    loops = np.split(every, np.flatnonzero(after[:-1] != every[1:]) + 1)
     bodies = [gaps.problem.part_of(mesh.edge_names[mesh.edge[elements[0]]]) for elements in loops]
     problem = gaps.problem
     stated = {frozenset(problem.sides_of(name)) for name in (*problem.contacts, *problem.bonded)}
@@ -130,9 +129,7 @@ def _through_itself(gaps: SurfaceGaps, body: Body) -> Penetration | None:
         for i, its in nearest[:number]
         if j not in (mesh.before[i], mesh.elements[i, 2]) and frozenset((its, body)) not in stated
     )
-    first, second = (
-        gaps.outline.sampled(np.array([i])).points[0][distance[elements == i].argmin()] for i in (one, other)
-    )
+    first, second = (gaps.outline.sampled(np.array([i]))[0][distance[elements == i].argmin()] for i in (one, other))
     edges = [state.edge_names[state.edge[i]] for i in (one, other)]
     x, y = first.tolist()
     of = [gaps.problem.part_of(edge) for edge in edges]
@@ -164,6 +161,8 @@ def _through_itself(gaps: SurfaceGaps, body: Body) -> Penetration | None:
 
 def _bonded_at_a_place(body: Body) -> set[frozenset[str]]:
     """Pairs of bodies that meet in one place where bonds with others hold both, as two of four quarters do."""
+    if not body.problem.bonded:
+        return set()
     tied, parts = body.points.tied, body.problem.parts
     of_node = np.zeros(len(tied), int)
     for number, part in enumerate(body.mesh.parts):
@@ -200,7 +199,10 @@ def _swallowed(
 
 def _without_details(line: Array, length: float) -> Array:
     """The line (k, 2) with no two points inside one part of this length."""
-    along = np.append(0.0, np.hypot(*np.diff(line, axis=0).T).cumsum())
+    steps = magnitudes(line[1:] - line[:-1])
+    if steps.min() >= length:
+        return line
+    along = np.append(0.0, steps.cumsum())
     kept = np.diff(np.floor(along / length), prepend=-1.0) > 0
     kept[-1] = True
     return line[kept]
@@ -213,12 +215,12 @@ def _crossing(
 
     At the tip of a notch strains are not small: neighbors that fold there do not count.
     """
-    size = gaps.problem.size
+    size = gaps.size
     tolerance = ROUND_OFF * size
-    closed = [_without_details(np.vstack([points, points[:1]]), DETAIL * size) for points in loops]
+    closed = [_without_details(np.concatenate([points, points[:1]]), DETAIL * size) for points in loops]
     for i, line in enumerate(closed):
         for j, other in enumerate(closed[: i + 1]):
-            if frozenset((bodies[i], bodies[j])) in stated:
+            if frozenset((bodies[i], bodies[j])) in stated or (i == j and winds_once(line, 2 * tolerance)):
                 continue
             point = first_meeting(line, other, tolerance, itself=i == j)
             if point is not None:

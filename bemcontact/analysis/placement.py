@@ -56,8 +56,10 @@ def placement(
     moved = first.moved
     moved.change[beside] = 0.0
     load = load_after(gaps, body, contact, solution, moved, first.noted)
-    ways, push = first.unheld(), load.copy()  # nothing holds the unseen motions
-    push[: len(ways)] = ways @ (ways.T @ load[: len(ways)])
+    push = load.copy()  # nothing holds the unseen motions
+    if load.any():
+        ways = first.unheld()
+        push[: len(ways)] = ways @ (ways.T @ load[: len(ways)])
     largest = (contact.weights @ solution.pressure) * abs(contact.rigid_motions).max(axis=0, initial=0.0)
     load = (load - push)[: contact.free_motions]
     load = np.where(abs(load) > NO_CHANGE * largest, load, 0.0)

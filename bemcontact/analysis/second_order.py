@@ -11,7 +11,7 @@ import numpy as np
 from bemcontact.adaptivity.first_sizes import ACROSS, OPPOSED
 from bemcontact.analysis.displaced_body import ProbedBody, elastic_displacement
 from bemcontact.analysis.linear_theory import LARGE, LARGE_PART, NOTICED, Judgment, Noticed
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, IntArray, magnitudes
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
@@ -37,6 +37,8 @@ BESIDE_IT = 0.1
 """Gap over the thickness up to which a surface is so near to a part that it may hold it where it buckles."""
 BESIDE = 2.0
 """Local coordinate up to which a place opposite may be in the next element."""
+ROWS = 256
+"""Elements whose distances from all others are computed at a time."""
 SEVERAL = 3.0
 """Displacement over that of linear theory from which its estimate, a series, is not given as a number."""
 
@@ -52,11 +54,13 @@ def second_order(body: Body, boundary: BoundaryState, initial_gap: Array) -> Jud
     slender = thickness < size / SLENDER
     if not slender.any():
         return Judgment()
-    moved = np.hypot(*elastic_displacement(body, boundary)[mesh.elements[:, 1]].T) / thickness * slender
+    moved = magnitudes(elastic_displacement(body, boundary)[mesh.elements[:, 1]]) / thickness * slender
     stressed = boundary.displacement - thermal_displacement(body)
     strain = axial_strain(mesh, stressed, every, np.zeros(len(every)))
     middle = (strain + axial_strain(mesh, stressed, facing, local)) / 2
     strut = np.where(slender, -middle / (EULER * (thickness / size) ** 2), 0.0)
+    if moved.max() <= MOVED and strut.max() <= CHANGED:
+        return Judgment()
     motion, compressed, strained = (_beyond_details(mesh, values) for values in (moved, strut, abs(strain)))
     if motion <= MOVED and compressed <= CHANGED:
         return Judgment()
@@ -195,15 +199,21 @@ def across(body: Body) -> tuple[Array, IntArray, Array]:
     outer[bonded_elements(body.problem, mesh)[0]] = False
     at, normals, tangents = mesh.nodes[mesh.elements[:, 1]], mesh.normals[:, 1], mesh.tangents[:, 1]
     thickness, facing, local = np.full(len(at), np.inf), np.arange(len(at)), np.zeros(len(at))
-    for i in np.flatnonzero(outer).tolist():
-        away = at[i] - at
-        inward, distance = away @ normals[i], np.hypot(*away.T)
-        faces = (inward > 0) & (inward >= ACROSS * distance) & (normals @ normals[i] < OPPOSED)
-        faces &= outer & (whole == whole[i])
-        if faces.any():
-            j = facing[i] = np.argmin(np.where(faces, distance, np.inf))
-            thickness[i] = distance[j]
-            local[i] = np.clip(away[j] @ tangents[j] / (tangents[j] @ tangents[j]), -BESIDE, BESIDE)
+    every = np.flatnonzero(outer)
+    for first in range(0, len(every), ROWS):
+        own = every[first : first + ROWS]
+        x, y = (place[own, None] - place[every] for place in at.T)
+        inward, distance = x * normals[own, 0, None] + y * normals[own, 1, None], np.hypot(x, y)
+        faces = (inward > 0) & (inward >= ACROSS * distance) & (normals[own] @ normals[every].T < OPPOSED)
+        distance[~faces | (whole[own, None] != whole[every])] = np.inf
+        nearest = distance.argmin(axis=1)
+        thickness[own], facing[own] = distance[np.arange(len(own)), nearest], every[nearest]
+    some = np.flatnonzero(np.isfinite(thickness))
+    facing[~np.isfinite(thickness)] = np.flatnonzero(~np.isfinite(thickness))
+    along = tangents[facing[some]]
+    local[some] = np.clip(
+        np.sum((at[some] - at[facing[some]]) * along, axis=1) / np.sum(along**2, axis=1), -BESIDE, BESIDE
+    )
     return thickness, facing, local
 
 
@@ -223,6 +233,8 @@ def _sizes_of_wholes(body: Body) -> Array:
 
 def thermal_displacement(body: Body) -> Array:
     """Displacement (m, 3, 2) [L] by which the heat that acts expands a free body."""
+    if not any(item.temperature for loads in body.problem.volume_loads for item in loads):
+        return np.zeros((*body.mesh.elements.shape, 2))
     parts = [
         factor
         * particular_solutions(

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from scipy.linalg import eigvalsh, get_lapack_funcs, solve_triangular
+from scipy.linalg import get_lapack_funcs, solve_triangular
 
 from bemcontact.arrays import Array
 
-geqrf, ormqr = get_lapack_funcs(("geqrf", "ormqr"), dtype=float)
+geqrf, ormqr, syevr, syevr_lwork = get_lapack_funcs(("geqrf", "ormqr", "syevr", "syevr_lwork"), dtype=float)
 EPS = float(np.finfo(float).eps)
 LEAST_COMPLIANCE = 1e-10
 """Fraction of ‖M‖∞ below which the compliance of a point may be what round-off leaves of zero."""
@@ -48,15 +48,16 @@ class Definiteness:
             none = np.zeros((n, 0))
             return cls(scales=S, reach=np.zeros(n), eigenvalue=None, certain=np.inf, form=none[:0], space=none)
         A, spread, reach = S[:, None] * (D[:, None] * M) * S, 1.0, np.ones(n)
-        K, terms, Z = (A + A.T) / 2, (np.abs(A) + np.abs(A).T) / 2, np.eye(n)
+        K, terms, Z = (A + A.T) / 2, np.abs(A), np.eye(n)
         if k := ell.shape[1]:
             ell = ell / np.linalg.norm(ell, axis=0)
-            spread, (reflectors, factors, *_) = float(np.linalg.cond(ell)), geqrf(ell)
-            Z, half = (_times_q(part, reflectors, factors)[:, k:] for part in (np.eye(n), K))
+            sizes, (reflectors, factors, *_) = np.linalg.svd(ell, compute_uv=False), geqrf(ell)
+            spread = float(sizes[0] / sizes[-1]) if sizes[-1] else np.inf
+            Z, half = (_times_q(part, reflectors, factors)[:, k:] for part in (Z, K))
             K = _times_q(half.T, reflectors, factors)[:, k:]
             reach = np.minimum(np.linalg.norm(Z, axis=1) + n * EPS * spread, 1.0)
-        smallest = float(eigvalsh(K, subset_by_index=(0, 0))[0])
-        round_off = n * EPS * spread * float(terms.sum(axis=1).max())
+        smallest = least_eigenvalue(K)
+        round_off = n * EPS * spread * float((terms.sum(axis=0) + terms.sum(axis=1)).max()) / 2
         return cls(scales=S, reach=reach, eigenvalue=smallest, certain=smallest - round_off, form=K, space=Z)
 
     def largest_change(self, s: Array, work: float = 0.0) -> float:
@@ -80,6 +81,20 @@ class Definiteness:
         reach = self.scales * np.linalg.norm(inverse, axis=0)
         x = np.linalg.norm(inverse @ (self.scales * s)) + reach @ lost
         return SURE * float(reach.max() * x)
+
+
+def least_eigenvalue(matrix: Array) -> float:
+    """The smallest eigenvalue of a symmetric matrix (m, m).
+
+    It is what `scipy.linalg.eigvalsh` finds, without what this does around it, which takes longer in a small matrix.
+    """
+    if not np.isfinite(matrix).all():
+        raise ValueError("the matrix must have finite entries")
+    work, whole, _ = syevr_lwork(len(matrix), lower=1)
+    found, *_, failed = syevr(matrix, compute_v=0, range="I", il=1, iu=1, lower=1, lwork=int(work), liwork=int(whole))
+    if failed:
+        raise np.linalg.LinAlgError("the smallest eigenvalue was not found")
+    return float(found[0])
 
 
 def _times_q(matrix: Array, reflectors: Array, factors: Array) -> Array:

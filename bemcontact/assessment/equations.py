@@ -86,10 +86,10 @@ class ContactEquations:
     def imbalance(self, y: Array) -> tuple[Array, Array]:
         """ℓᵀy + load (k,), and its round-off where the numbers are not exact."""
         ell, load = self.equilibrium, self.load
-        left = exact_remainders(load, -np.hstack([ell.T, self.equilibrium_rest.T]), np.concatenate([y, y]))
         if self.exact:
+            left = exact_remainders(load, -np.hstack([ell.T, self.equilibrium_rest.T]), np.concatenate([y, y]))
             return left, EPS * np.abs(left)
-        return left, 2 * EPS * (np.abs(ell).T @ y + np.abs(load))
+        return exact_remainders(load, -ell.T, y), 2 * EPS * (np.abs(ell).T @ y + np.abs(load))
 
     def step_to_balance(self, y: Array, least: float) -> tuple[Array, float]:
         """A step (n,) of points that carry more than `least` after which ℓᵀy = -load but for a step of this size."""
@@ -138,9 +138,10 @@ def _least_change(
     lost, beside = len(ell) * EPS, np.zeros(len(ell))
     if not left.any():
         return 0.0, beside, None
-    _, sizes, axes = np.linalg.svd(ell[carries])
-    if (rank := int(np.count_nonzero(sizes > lost))) == ell.shape[1]:
-        return float(np.linalg.norm(np.linalg.pinv(ell[carries], rcond=0.0), axis=1) @ left), beside, None
+    own = ell[carries]
+    _, sizes, axes = np.linalg.svd(own, full_matrices=len(own) < own.shape[1])
+    if (rank := int(np.count_nonzero(sizes > lost))) == ell.shape[1]:  # rows of the pseudo-inverse are these times Uᵀ
+        return float(np.linalg.norm(axes.T / sizes, axis=1) @ left), beside, None
     if rank == ell.shape[1] - 1:
         return _tilted(ell, carries, left, gaps, round_off, axes[-1])
     columns, size = np.vstack([ell, -ell[carries]]).T, 0.0

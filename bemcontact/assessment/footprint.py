@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import computed_field
 
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, IntArray, magnitudes
 from bemcontact.checks.attributes import PEAK, PLACE, ByName, WithHints, Words
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import BALANCED
@@ -17,6 +17,7 @@ from bemcontact.contact.solution import ContactSolution
 from bemcontact.serialization import Internal, Leaf, Pair, Record
 
 OPEN_NODES = 3
+EPS = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -207,8 +208,8 @@ class _LoadOnPoints(NamedTuple):
         """Force, moment and peak of some points of a zone, each of which counts once."""
         own = np.zeros_like(self.pressure)
         own[index] = self.pressure[index]
-        whole = _resultant(self.contact, own)
-        return whole.force, whole.moment, None if zone in self.infinite else _peak(self.contact, own)
+        force, moment = _sums(self.contact, self.contact.forces(own))
+        return force, moment, None if zone in self.infinite else _peak(self.contact, own)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -247,19 +248,19 @@ def _paths(contact: CondensedContact, solution: ContactSolution) -> list[tuple[i
 def _path(contact: CondensedContact, zone: int, run: int, gap: Array, touching: NDArray[np.bool_]) -> _Path:
     """Gather the points of a run."""
     index = contact.in_order(np.flatnonzero((contact.zone == zone) & (contact.run == run)))
-    perimeter = contact.run_length[run]
-    turns = np.array([-1.0, 0.0, 1.0]) if np.isfinite(perimeter) else np.zeros(1)
-    around = np.tile(index, len(turns))
-    m = len(index)
+    perimeter, m = float(contact.run_length[run]), len(index)
+    around, turns, first = index, 0.0, 0
+    if np.isfinite(perimeter):
+        around, turns, first = np.tile(index, 3), np.repeat([-perimeter, 0.0, perimeter], m), m
     return _Path(
-        arc=contact.arc_position[around] + np.repeat(turns, m) * (perimeter if len(turns) > 1 else 0.0),
+        arc=contact.arc_position[around] + turns,
         points=contact.points[around],
         gap=np.maximum(gap[around], 0.0),
         touching=touching[around],
-        first=m * (len(turns) // 2),
-        last=m * (len(turns) // 2 + 1),
+        first=first,
+        last=first + m,
         run=run,
-        perimeter=float(perimeter),
+        perimeter=perimeter,
         held_arc=np.full(2, np.nan) if contact.held_arc is None else contact.held_arc[run],
         held_points=np.zeros((2, 2)) if contact.held_points is None else contact.held_points[run],
         index=around,
@@ -327,11 +328,19 @@ def _end(path: _Path, last: int, step: int) -> float:
         beyond = last + step in (-1, len(path.arc))
         held = path.held_arc[0 if step < 0 else 1]
         return held if beyond and np.isfinite(held) else path.arc[last]
-    nearest = path.arc[opened[0]]
+    at, nearest = float(path.arc[last]), float(path.arc[opened[0]])
     if len(opened) == 1:
-        return (path.arc[last] + nearest) / 2
-    slope, value = np.polyfit(path.arc[opened] - path.arc[last], path.gap[opened] ** (2 / 3), 1)
-    return np.clip(path.arc[last] - value / slope, *sorted((path.arc[last], nearest)))
+        return (at + nearest) / 2
+    slope, value = _line(path.arc[opened] - at, path.gap[opened] ** (2 / 3))
+    return min(max(at - value / slope, min(at, nearest)), max(at, nearest))
+
+
+def _line(x: Array, y: Array) -> tuple[float, float]:
+    """Slope, and value at zero, of the line of least squares through points x (k,), y (k,), as `np.polyfit` has it."""
+    columns = np.stack([x, np.ones_like(x)], axis=1)
+    scale = np.sqrt((columns * columns).sum(axis=0))
+    slope, value = (np.linalg.lstsq(columns / scale, y, rcond=len(x) * EPS)[0] / scale).tolist()
+    return slope, value
 
 
 def _end_rate(path: _Path, rate: Array, last: int, step: int) -> float | None:
@@ -342,8 +351,8 @@ def _end_rate(path: _Path, rate: Array, last: int, step: int) -> float | None:
     if len(opened) < 2:
         return 0.0
     arc, gap = path.arc[opened] - path.arc[last], path.gap[opened]
-    slope, value = np.polyfit(arc, gap ** (2 / 3), 1)
-    slope_rate, value_rate = np.polyfit(arc, 2 / 3 * gap ** (-1 / 3) * rate[opened], 1)
+    slope, value = _line(arc, gap ** (2 / 3))
+    slope_rate, value_rate = _line(arc, 2 / 3 * gap ** (-1 / 3) * rate[opened])
     free = 0 < -value / slope / arc[0] < 1
     return float((value * slope_rate / slope - value_rate) / slope) if free else 0.0
 
@@ -354,9 +363,9 @@ def _at(path: _Path, position: float) -> Pair:
         x, y = path.held_points[int(np.flatnonzero(path.held_arc == position)[0])]
         return float(x), float(y)
     count = min(3, len(path.arc))
-    start = np.clip(np.argmin(np.abs(path.arc - position)) - 1, 0, len(path.arc) - count)
-    arc, points = path.arc[start : start + count], path.points[start : start + count]
-    shape = [np.prod([(position - other) / (own - other) for other in arc if other != own]) for own in arc]
+    start = min(max(int(np.argmin(np.abs(path.arc - position))) - 1, 0), len(path.arc) - count)
+    arc, points = path.arc[start : start + count].tolist(), path.points[start : start + count]
+    shape = [math.prod((position - other) / (own - other) for other in arc if other != own) for own in arc]
     x, y = np.array(shape) @ points
     return float(x), float(y)
 
@@ -373,10 +382,14 @@ def _peak(contact: CondensedContact, pressure: Array) -> Peak | None:
 def _resultant(contact: CondensedContact, pressure: Array) -> Resultant:
     """Force Σ w p n, its moment, and its line of action."""
     forces = contact.forces(pressure)
-    x, y = contact.points.T
-    fx, fy = map(float, forces.sum(axis=0))
-    moment = float((x * forces[:, 1] - y * forces[:, 0]).sum())
+    (fx, fy), moment = _sums(contact, forces)
     square = fx**2 + fy**2
-    acts = square > (BALANCED * np.hypot(*forces.T).sum()) ** 2  # else the force, and so its line, is round-off
+    acts = square > (BALANCED * magnitudes(forces).sum()) ** 2  # else the force, and so its line, is round-off
     line_point = (moment * fy / square, -moment * fx / square) if acts else None
     return Resultant(force=(fx, fy), moment=moment, line_point=line_point)
+
+
+def _sums(contact: CondensedContact, forces: Array) -> tuple[Pair, float]:
+    """Sum and moment about the origin of forces (n, 2) at the contact points."""
+    fx, fy = forces.sum(axis=0).tolist()
+    return (fx, fy), float((contact.points[:, 0] * forces[:, 1] - contact.points[:, 1] * forces[:, 0]).sum())

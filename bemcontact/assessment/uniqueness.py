@@ -41,10 +41,10 @@ from functools import cached_property
 
 import numpy as np
 import scipy
-from scipy.linalg import eigh, eigvalsh
+from scipy.linalg import eigh
 
 from bemcontact.arrays import Array, BoolArray
-from bemcontact.assessment.definiteness import EPS, SURE, Definiteness
+from bemcontact.assessment.definiteness import EPS, SURE, Definiteness, least_eigenvalue
 
 MOST = 8
 """Eigenvectors with which a proof is tried."""
@@ -246,7 +246,7 @@ def _largest_pressure(whole: Definiteness, y: Array, pull: Array) -> float:
             continue
         opposed = np.maximum(-vectors[:, :m] @ vectors[:, :m].T, 0.0)  # N, but for its size
         form = whole.form - values[m] * opposed - round_off * np.eye(len(values))
-        least = float(eigvalsh(form, subset_by_index=(0, 0))[0])
+        least = least_eigenvalue(form)
         if least > round_off:
             load = np.maximum(form @ y, pull)
             return SURE * float(np.sqrt(load @ np.linalg.solve(form, load) / least))

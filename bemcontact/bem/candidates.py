@@ -205,7 +205,7 @@ def _faces(outline: Outline, surface: AnySurface, in_zone: BoolArray, deflection
         for part, known in zip(held, surface.faces(mesh.nodes[own], inward[own], reach[own]), strict=True):
             part[own] = known
     else:
-        held = surface.faces(mesh.nodes, *outline.sides)
+        held = outline.held_nodes(surface)
     other = magnitudes(held.normals - held.normals[:, [2, 0, 0]]) > ALIKE
     return _NodeFaces(*held, other | (abs(held.gap - held.gap[:, [2, 0, 0]]) > ALIKE * mesh.size))
 

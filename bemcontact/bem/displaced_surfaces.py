@@ -43,6 +43,11 @@ class DisplacedSurfaces:
         zones = self.problem.zones.items()
         return {name: zone.surface for name, zone in zones if not isinstance(zone.surface, DeflectedContour)}
 
+    @cached_property
+    def size(self) -> float:
+        """Size of the problem [L]."""
+        return self.problem.size
+
     def exact(self, zone: str, moved: Array) -> Closest:
         """Distance (...) [L] of displaced places (..., 2) from the displaced surface, and the normals there.
 
@@ -94,28 +99,18 @@ class DisplacedSurfaces:
                 return Way(x, y, turn, tool.point or (0.0, 0.0))
         return AS_DRAWN
 
-    def turn_of_normals(self, zone: str, points: Array, normals: Array) -> Array:
-        """Change (k, 2) of normals (k, 2) at points (k, 2) [L] of a surface as its tool turns, or its body deforms.
-
-        Not the turn of a tool that contact has followed.
-        """
-        surface = self.surfaces[zone]
-        if not (isinstance(surface, BodySurface) and surface.elastic):
-            return np.zeros_like(normals)
-        return self.turn_of(surface, points, normals)
-
     def _motion_of_body(self, surface: BodySurface, points: Array, inward: Array | None = None) -> Array:
         """Displacement (..., 2) [L] of an elastic body at places opposite to points (..., 2)."""
         flat = points.reshape(-1, 2)
-        feet = surface.feet(flat) if inward is None else surface.pairs(flat, inward.reshape(-1, 2))
-        element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)
+        edge, fraction = surface.nearest_to(flat) if inward is None else surface.pairs(flat, inward.reshape(-1, 2))[:2]
+        element, xi = self.outline.elements_at([edge.name for edge in surface.edges], edge, fraction)
         values = np.einsum("ki,kix->kx", reference_element.values(xi), self.state.displacement[element])
         return values.reshape(points.shape)
 
     def turn_of(self, surface: BodySurface, points: Array, normals: Array) -> Array:
-        """Change (k, 2) of normals (k, 2) of an elastic body at points (k, 2) [L]."""
-        feet = surface.feet(points)
-        element, xi = self.outline.elements_at([edge.name for edge in surface.edges], feet.edge, feet.fraction)
+        """Change (k, 2) of normals (k, 2) of an elastic body at points (k, 2) [L], as it deforms."""
+        edges = [edge.name for edge in surface.edges]
+        element, xi = self.outline.elements_at(edges, *surface.nearest_to(points))
         shapes = reference_element.derivatives(xi)
         along, change = (
             np.einsum("ki,kix->kx", shapes, values[element]) for values in (self.state.points, self.state.displacement)
@@ -127,6 +122,9 @@ class DisplacedSurfaces:
 def _closest(surface: AnyShape, points: Array) -> Closest:
     """Distance (...) [L] of points (..., 2) from a surface, and the normals there."""
     flat = points.reshape(-1, 2)
-    parts = [surface.closest(flat[i : i + CHUNK]) for i in range(0, max(len(flat), 1), CHUNK)]
-    gap, normals = (np.concatenate(part) for part in zip(*parts, strict=True))
+    if len(flat) <= CHUNK:
+        gap, normals = surface.closest(flat)
+    else:
+        parts = [surface.closest(flat[i : i + CHUNK]) for i in range(0, len(flat), CHUNK)]
+        gap, normals = (np.concatenate(part) for part in zip(*parts, strict=True))
     return Closest(gap.reshape(points.shape[:-1]), normals.reshape(points.shape))

@@ -16,7 +16,7 @@ from bemcontact.problems.curves import Edge
 from bemcontact.problems.nearest_places import nearest_places, surface_corners
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import Circle, Plane
-from bemcontact.problems.surface_lines import Faces, Polyline, Spline
+from bemcontact.problems.surface_lines import Faces, Polyline, SmoothSurface, Spline
 
 SAMPLES = np.linspace(-1.0, 1.0, 17)
 """Local coordinates at which the boundary is compared with a surface; some are moved, see `Outline.local`."""
@@ -26,6 +26,8 @@ STEPS_BACK = 4
 """Steps from a fraction of an edge to the local coordinate: each has more digits, for middle nodes are nearly there."""
 KEPT = 8
 """Sets of faces at samples that are kept."""
+KEPT_SURFACES = 64
+"""Surfaces of which the faces at nodes are kept: those of a problem with many zones."""
 ROUGH = 1e-7
 """Difference of the unit normals of two edges below which they meet smoothly."""
 
@@ -58,15 +60,15 @@ class Outline:
         narrower than an element would be between them.
         """
         fractions, step = self.mesh.fractions, SAMPLES[-1] / NODES[1]
-        local, taken = np.tile(SAMPLES, (len(fractions), 1)), np.zeros((len(fractions), len(SAMPLES)))
+        local, taken, moved = np.tile(SAMPLES, (len(fractions), 1)), np.zeros((len(fractions), len(SAMPLES))), False
         taken[:, NODES] = np.inf
         zones = [(zone.surface, self.problem.edges_of(name)) for name, zone in self.problem.zones.items()]
         for number, edge in enumerate(self.edges):
-            own = np.flatnonzero(self.mesh.edge == number)
             for surface, touching in zones:
-                places = np.array([*_narrow_places(edge, surface, paired=edge.name in touching)], float)
-                if not len(places):
+                found = tuple(_narrow_places(edge, surface, paired=edge.name in touching))
+                if not found:
                     continue
+                places, own, moved = np.array(found, float), np.flatnonzero(self.mesh.edge == number), True
                 elements = own[np.minimum(np.searchsorted(fractions[own, 2], places), len(own) - 1)]
                 first, _, last = fractions[elements].T
                 xi = (2 * (places - first) / (last - first) - 1)[:, None]
@@ -75,7 +77,7 @@ class Outline:
                     distance = away[i] + taken[element]
                     if distance[at := distance.argmin()] < 2 * step:
                         local[element, at], taken[element, at] = xi[i, 0], np.inf
-        return np.sort(local, axis=1)
+        return np.sort(local, axis=1) if moved else local
 
     @cached_property
     def shapes(self) -> Array:
@@ -127,20 +129,49 @@ class Outline:
         number, (first, middle, last) = self.mesh.edge[elements], self.mesh.fractions[elements].T[..., None]
         along, result = first + (last - first) * (1 + xi) / 2, np.empty((*xi.shape, 2))
         along += (middle - (first + last) / 2) * (1 - xi**2)  # not zero where an element faces one of another body
-        along = np.clip(along, first, last)
+        along = np.minimum(np.maximum(along, first), last)
         for i in sorted({*number.tolist()}):
             on = number == i
             result[on] = values(self.edges[i], along[on].ravel()).reshape(-1, xi.shape[1], 2)
         return result
 
-    @cached_property
-    def _samples(self) -> Places:
-        """Places at the samples of all elements."""
-        return self.places(np.arange(len(self.local)), self.local)
+    def sampled(self, elements: IntArray) -> Array:
+        """Places (k, 17, 2) [L] of the samples of elements (k,)."""
+        return self._at_samples(elements, Edge.points)
 
-    def sampled(self, elements: IntArray) -> Places:
-        """Places at the samples of elements (k,)."""
-        return Places(*(part[elements] for part in self._samples))
+    def inward(self, elements: IntArray) -> Array:
+        """Unit normals (k, 17, 2) into the body at the samples of elements (k,)."""
+        return -self._at_samples(elements, Edge.normals)
+
+    def _at_samples(self, elements: IntArray, values: Callable[[Edge, Array], Array]) -> Array:
+        """Values (k, 17, 2) of edges at the samples of elements (k,), found when they are first asked for."""
+        found, known = self._known_samples.setdefault(
+            values, (np.empty((*self.local.shape, 2)), np.zeros(len(self.local), bool))
+        )
+        new = elements[~known[elements]]
+        if len(new):
+            found[new], known[new] = self._on_edges(new, self.local[new], values), True
+        return found[elements]
+
+    @cached_property
+    def _known_samples(self) -> dict[Callable[[Edge, Array], Array], tuple[Array, BoolArray]]:
+        """Values at the samples of all elements, and for which elements they are known."""
+        return {}
+
+    def held_nodes(self, surface: AnyShape) -> Faces:
+        """Faces (N, 3) of a surface that hold all nodes."""
+        for of, known in self._held_nodes:
+            if of is surface:
+                return known
+        # one face of a smooth surface holds both sides of a node, however the body is turned there
+        held = surface.faces(self.mesh.nodes, *(() if isinstance(surface, SmoothSurface) else self.sides))
+        self._held_nodes.appendleft((surface, held))
+        return held
+
+    @cached_property
+    def _held_nodes(self) -> deque[tuple[AnyShape, Faces]]:
+        """Those that were asked for last: contact points have them, and many states on one mesh ask for the same."""
+        return deque(maxlen=KEPT_SURFACES)
 
     def faces(self, surface: AnyShape, elements: IntArray) -> Faces:
         """Faces (k, 17) of a surface that hold the samples of elements (k,).
@@ -160,13 +191,15 @@ class Outline:
         return deque(maxlen=KEPT)
 
     def _faces(self, surface: AnyShape, elements: IntArray) -> Faces:
-        at, (nodes, (beside, reach)) = self.sampled(elements), (self.mesh.nodes, self.sides)
-        flat, inward = at.points.reshape(-1, 2), np.repeat(at.inward.reshape(-1, 1, 2), 2, axis=1)
-        # nodes say where the body lies on a face
-        every = np.concatenate([nodes, flat]), np.concatenate([beside, inward]), np.append(reach, np.zeros(len(flat)))
-        held = surface.faces(*every)
-        own = Faces(*(part[len(nodes) :, 0].reshape(at.points.shape[:-1] + part.shape[2:]) for part in held))
-        for part, at_nodes in zip(own, held, strict=True):
+        points = self.sampled(elements)
+        flat, before, turned = points.reshape(-1, 2), 0, ()
+        if not isinstance(surface, SmoothSurface):  # nodes say where the body lies on a face
+            inward, (beside, reach) = np.repeat(self.inward(elements).reshape(-1, 1, 2), 2, axis=1), self.sides
+            before, turned = len(reach), (np.concatenate([beside, inward]), np.append(reach, np.zeros(len(flat))))
+            flat = np.concatenate([self.mesh.nodes, flat])
+        held = surface.faces(flat, *turned)
+        own = Faces(*(part[before:, 0].reshape(points.shape[:-1] + part.shape[2:]) for part in held))
+        for part, at_nodes in zip(own, self.held_nodes(surface), strict=True):
             part[:, NODES] = at_nodes[self.mesh.elements[elements], [2, 0, 0]]
         return own
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes, scalar_products
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
 from bemcontact.bem.boundary_values import BoundaryState
@@ -47,6 +47,8 @@ HALVINGS = 40
 """Halvings of the part of an element in which it crosses a surface."""
 LITTLE = 1e-3
 """Motion over the size of the body up to which it is not told on which side of a corner a place comes to lie."""
+MOST_BETWEEN = 1.25
+"""Displacement between the nodes of an element over the largest one at them, at most: |N_1| + |N_2| + |N_3|."""
 TOUCHES = 1e-6
 """Gap of a node, over the largest one of its element, up to which it touches: pressure keeps such nodes at zero."""
 
@@ -129,8 +131,8 @@ class SurfaceGaps(DisplacedSurfaces):
 
     def _holding(self, surface: AnyShape) -> Faces:
         """Faces of a surface that hold the nodes (m, 3) of elements."""
-        mesh, side = self.outline.mesh, [2, 0, 0]
-        return Faces(*(part[mesh.elements, side] for part in surface.faces(mesh.nodes, *self.outline.sides)))
+        elements = self.outline.mesh.elements
+        return Faces(*(part[elements, [2, 0, 0]] for part in self.outline.held_nodes(surface)))
 
     @cached_property
     def paired(self) -> dict[str, BoolArray]:
@@ -138,22 +140,25 @@ class SurfaceGaps(DisplacedSurfaces):
         tools = {name: tool for tool, stated in self.problem.tools.items() for name in stated.zones}
         in_zones, names = self.outline.in_zones, [*self.problem.zones]
         paired = {name: in_zones[names.index(name)].copy() for name in self.surfaces}
-        for (zone, own), (name, held) in permutations(self.held.items(), 2):
+        for zone, name in permutations(self.surfaces, 2):
             if tools.get(name) == tools.get(zone):
+                own, held = self.held[zone], self.held[name]
                 apart = magnitudes(held.normals - own.normals) > ALIKE
-                apart |= abs(held.gap - own.gap) > ALIKE * self.problem.size
+                apart |= abs(held.gap - own.gap) > ALIKE * self.size
                 paired[zone] |= in_zones[names.index(name)] & ~apart.any(axis=1)
         return paired
 
     def linear(self, zone: str, elements: IntArray) -> Faces:
         """Gap (k, q) [L] of elements (k,) as contact sees it, ε + n·(u - w), with the normals n of contact."""
-        at, held = self.outline.sampled(elements), self.outline.faces(self.surfaces[zone], elements)
-        moved = self._displacement[elements] - self.tool_motion(zone, at.points, at.inward)
-        return held._replace(gap=held.gap + np.sum(held.normals * moved, axis=-1))
+        surface, outline, moved = self.surfaces[zone], self.outline, self._displacement[elements]
+        held = outline.faces(surface, elements)
+        if isinstance(surface, BodySurface) or self.way_of_tool(zone) != AS_DRAWN:
+            moved = moved - self.tool_motion(zone, outline.sampled(elements), outline.inward(elements))
+        return held._replace(gap=held.gap + scalar_products(held.normals, moved))
 
     def _against(self, zone: str, elements: IntArray) -> Array:
         """Displacement (k, q, 2) [L] of elements (k,) beside that of the surface, where they come to touch it."""
-        surface, places = self.surfaces[zone], self.outline.sampled(elements).points
+        surface, places = self.surfaces[zone], self.outline.sampled(elements)
         way = surface.approach.step if isinstance(surface, BodySurface) and surface.elastic else np.zeros(2)
         return self._displacement[elements] - self.tool_motion(zone, places - way)
 
@@ -163,7 +168,7 @@ class SurfaceGaps(DisplacedSurfaces):
 
     def moved(self, elements: IntArray) -> Array:
         """Displaced places (k, q, 2) [L] of elements (k,)."""
-        return self.outline.sampled(elements).points + self._displacement[elements]
+        return self.outline.sampled(elements) + self._displacement[elements]
 
     def intrusion(self, zone: str) -> Intrusion:
         """How deep each element is in the surface of a zone, beyond what interpolation between its nodes explains.
@@ -173,10 +178,11 @@ class SurfaceGaps(DisplacedSurfaces):
         that is behind the surface before anything moves does not count unless it fits it with interference, nor does
         one opposite to which the surface is taken to have ended.
         """
-        paired, near = self.paired[zone], self._near(zone) & self._may_meet(zone)
+        paired = self.paired[zone]
         m, ends = len(paired), self._ends(zone, paired)
         depth, xi, behind, hidden = np.full(m, -np.inf), np.zeros(m), np.zeros(m, bool), [-np.inf] * len(ends)
-        for elements, own in ((np.flatnonzero(paired), True), (np.flatnonzero(~paired & near), False)):
+        others = self.near(zone, np.flatnonzero(~paired & self._may_meet(zone)))
+        for elements, own in ((np.flatnonzero(paired), True), (others, False)):
             if not len(elements):
                 continue
             local = self.outline.local[elements]
@@ -184,7 +190,8 @@ class SurfaceGaps(DisplacedSurfaces):
                 depths = self._depth_in_own(zone, elements)
             else:
                 depths, behind[elements], hidden, local = self._depth_in_other(zone, elements, ends)
-                depths[self._beside_corner(zone, elements)] = -np.inf
+                if (depths > 0).any():
+                    depths[self._beside_corner(zone, elements)] = -np.inf
             deepest = depths.argmax(axis=1)
             depth[elements], xi[elements] = (part[np.arange(len(elements)), deepest] for part in (depths, local))
         excused = ~paired & (depth <= self.second_order(zone))
@@ -195,17 +202,18 @@ class SurfaceGaps(DisplacedSurfaces):
 
     def _depth_in_own(self, zone: str, elements: IntArray) -> Array:
         """Depth (k, q) [L] of elements (k,) of the zone."""
-        at, displacement = self.outline.sampled(elements), self._displacement[elements]
-        here, there = self.linear(zone, elements), self.exact(zone, at.points + displacement)
+        here, there = self.linear(zone, elements), self.exact(zone, self.moved(elements))
         nodes = np.maximum(here.gap[:, None, NODES], 0.0)
         # where no node touches, what dips was not seen, and is no contact
         touching = nodes.min(axis=2) <= TOUCHES * nodes.max(axis=2)
         shapes = self.outline.shapes[elements]
         dip = np.maximum(-np.sum(shapes * np.where(self._same(zone, here), nodes, 0.0), axis=2), 0.0) * touching
-        other = np.sum(here.faces * there.normals, axis=-1) < SAME_FACE
-        beyond = other & (-there.gap > self.second_order(zone)) & ~self._beside_corner(zone, elements)
-        beyond &= ~self._beside_own_corner(zone, elements)
-        return np.maximum(-here.gap - dip, np.where(beyond, -there.gap, -np.inf))
+        depth, other = -here.gap - dip, scalar_products(here.faces, there.normals) < SAME_FACE
+        beyond = other & (-there.gap > self.second_order(zone))
+        if beyond.any():
+            beyond &= ~(self._beside_corner(zone, elements) | self._beside_own_corner(zone, elements))
+            depth = np.maximum(depth, np.where(beyond, -there.gap, -np.inf))
+        return depth
 
     def _beside_corner(self, zone: str, elements: IntArray) -> BoolArray:
         """Whether places (k, q) of elements (k,) are nearer to a corner of a surface than they move, which is little.
@@ -214,7 +222,7 @@ class SurfaceGaps(DisplacedSurfaces):
         places move against each other by more than their distance from it. Those beside a convex corner of a body,
         where pairs end, slide along the end however far they move; `placement` judges this.
         """
-        places, surface = self.outline.sampled(elements).points, self.surfaces[zone]
+        places, surface = self.outline.sampled(elements), self.surfaces[zone]
         beside = np.zeros(places.shape[:-1], bool)
         if not isinstance(surface, Polyline | BodySurface):
             return beside
@@ -222,7 +230,7 @@ class SurfaceGaps(DisplacedSurfaces):
         for corner in surface.points if isinstance(surface, Polyline) else surface.ridges:
             beside |= magnitudes(places - corner) <= moved
         if isinstance(surface, Polyline):
-            return beside & (moved <= LITTLE * self.problem.size)
+            return beside & (moved <= LITTLE * self.size)
         return beside | self.beside_groove(zone, places, moved)
 
     def _beside_own_corner(self, zone: str, elements: IntArray) -> BoolArray:
@@ -230,7 +238,7 @@ class SurfaceGaps(DisplacedSurfaces):
 
         There they are judged on the other face.
         """
-        mesh, paired, places = self.outline.mesh, self.paired[zone], self.outline.sampled(elements).points
+        mesh, paired, places = self.outline.mesh, self.paired[zone], self.outline.sampled(elements)
         corners, beside = paired & paired[mesh.before] & (mesh.turns < -SMOOTH), np.zeros(places.shape[:-1], bool)
         if not corners.any():
             return beside
@@ -244,7 +252,7 @@ class SurfaceGaps(DisplacedSurfaces):
         surface = self.surfaces[zone]
         if not isinstance(surface, BodySurface):
             return np.zeros(moved.shape, bool)
-        return (moved <= LITTLE * self.problem.size) & surface.beside_groove(places, moved)
+        return (moved <= LITTLE * self.size) & surface.beside_groove(places, moved)
 
     def _same(self, zone: str, here: Faces) -> BoolArray:
         """Whether the face of each place (k, q, 3) is that of each node of its element; a smooth surface has one."""
@@ -259,36 +267,40 @@ class SurfaceGaps(DisplacedSurfaces):
 
         Also whether each is behind, and the depth beyond each end; the local coordinates come last.
         """
-        flush, at = FLUSH * self.problem.size, self.outline.sampled(elements)
-        motion = self._displacement[elements]
-        before, normals = self.undeformed(zone, at.points)
-        after = self.exact(zone, at.points + motion).gap
-        if isinstance(self.surfaces[zone], BodySurface):  # linear: beside an end of contact places slide along it
+        flush, places, surface = FLUSH * self.size, self.outline.sampled(elements), self.surfaces[zone]
+        before, normals = self.undeformed(zone, places)
+        outside, turned = np.ones((2, *before.shape), bool)
+        behind, crossings = np.zeros(len(elements), bool), ()
+        if (before < -flush).any():
+            turned = scalar_products(self.outline.inward(elements), normals) > TURNED
+            snug, mesh = self._fits(zone, elements, before, turned)[:, None], self.outline.mesh
+            behind = np.any((before < -flush) & ~snug, axis=1)
+            here = self._mask(elements[behind])
+            crosses = (here | here[mesh.before] | here[mesh.elements[:, 2]])[elements, None]
+            outside = (before > flush) | snug | (~crosses & (before >= -flush))
+            crossings = self._crossings(zone, elements, np.where(snug, np.inf, before), crosses, flush)
+        if isinstance(surface, BodySurface):  # linear: beside an end of contact places slide along it
             against = self._against(zone, elements)
-            along = self._normals_beside_end(zone, at.points, against, normals)
-            after = before + np.sum(along * against, axis=-1)
-        turned = np.sum(at.inward * normals, axis=-1) > TURNED
-        snug = self._fits(zone, elements, before, turned)[:, None]
-        behind, mesh = np.zeros(len(self.state.points), bool), self.outline.mesh
-        behind[elements] = np.any((before < -flush) & ~snug, axis=1)
-        crosses: BoolArray = (behind | behind[mesh.before] | behind[mesh.elements[:, 2]])[elements, None]
-        outside = (before > flush) | snug | (~crosses & (before >= -flush))
-        surface = self.surfaces[zone]
-        if isinstance(surface, BodySurface):
-            outside &= ~self._slides(zone, surface, at.points)
-        depth, local = np.where(outside, -after, -np.inf), self.outline.local[elements].copy()
-        for crossing in self._crossings(zone, elements, np.where(snug, np.inf, before), crosses, flush):
+            after = before + scalar_products(self._normals_beside_end(zone, places, against, normals), against)
+            if (after < 0).any():
+                outside &= ~self._slides(zone, surface, places)
+        else:
+            after = self.exact(zone, self.moved(elements)).gap
+        depth, local = np.where(outside, -after, -np.inf), self.outline.local[elements]
+        for crossing in crossings:
             if crossing.turned:
                 depth[crossing.sample] = max(depth[crossing.sample], crossing.depth)
                 local[crossing.sample] = crossing.local
             else:
-                away = magnitudes(at.points - crossing.place)
+                away = magnitudes(places - crossing.place)
                 moved = magnitudes(self._against(zone, elements))
                 depth[~turned & (away <= BESIDE * moved)] = -np.inf
-        ended = [_opposite(end, at.points - before[..., None] * normals, normals, flush) for end in ends]
+        if not ends:
+            return depth, behind, [], local
+        ended = [_opposite(end, places - before[..., None] * normals, normals, flush) for end in ends]
         sure = depth > self.second_order(zone)
         hidden = [float(np.max(depth, initial=-np.inf, where=beyond & sure)) for beyond in ended]
-        return np.where(np.any(ended, axis=0), -np.inf, depth), behind[elements], hidden, local
+        return np.where(np.any(ended, axis=0), -np.inf, depth), behind, hidden, local
 
     def _normals_beside_end(self, zone: str, places: Array, motion: Array, normals: Array) -> Array:
         """Normals (k, q, 2) along which places beside the zone move into another elastic body.
@@ -302,7 +314,8 @@ class SurfaceGaps(DisplacedSurfaces):
         result = normals.copy()
         for last, neighbor in ((2, mesh.elements[:, 2]), (0, mesh.before)):
             for own in np.flatnonzero(paired & ~paired[neighbor]).tolist():
-                normal, corner = self.held[zone].normals[own, last], self.state.points[own, last]
+                corner = self.state.points[own, last]
+                normal = self.outline.held_nodes(surface).normals[mesh.elements[own, last], 2 - last]
                 slides = abs(cross(normal, motion))
                 result[magnitudes(places - corner) <= slides] = normal
         return result
@@ -319,7 +332,7 @@ class SurfaceGaps(DisplacedSurfaces):
             paired = surface.feet(nodes).points
             corners, which = np.unique(feet.points[beside], axis=0, return_inverse=True)
             away = magnitudes(corners[:, None] - paired).min(axis=1, initial=np.inf)
-            beside[beside] = (away <= FLUSH * self.problem.size)[which.ravel()]
+            beside[beside] = (away <= FLUSH * self.size)[which.ravel()]
         return beside.reshape(places.shape[:-1])
 
     def _crossings(
@@ -353,10 +366,8 @@ class SurfaceGaps(DisplacedSurfaces):
         the zone. `before` (k, q) is the distance [L] of places from the surface, and `turned` (k, q) says whether they
         face it.
         """
-        size, mesh, paired = self.problem.size, self.outline.mesh, self.paired[zone]
+        size, mesh, paired = self.size, self.outline.mesh, self.paired[zone]
         inside = before < -FLUSH * size
-        if not inside.any():
-            return np.zeros(len(elements), bool)
         behind = elements[inside.any(axis=1)]
         deep = self._marked(elements[(before < -SNUG * size).any(axis=1)], behind)
         faces = self._marked(elements[(inside & turned).any(axis=1)], behind)
@@ -365,27 +376,35 @@ class SurfaceGaps(DisplacedSurfaces):
 
     def _marked(self, marked: IntArray, over: IntArray) -> BoolArray:
         """Mark (m,) all elements of the unbroken stretches of some elements in which one is marked."""
-        mesh = self.outline.mesh
-        found, allowed = np.zeros((2, len(mesh.elements)), bool)
-        found[marked], allowed[over] = True, True
+        mesh, found, allowed = self.outline.mesh, self._mask(marked), self._mask(over)
         while (more := allowed & ~found & (found[mesh.before] | found[mesh.elements[:, 2]])).any():
             found |= more
         return found
+
+    def _mask(self, elements: IntArray) -> BoolArray:
+        """Which of all elements (m,) these are."""
+        mask = np.zeros(len(self.outline.mesh.elements), bool)
+        mask[elements] = True
+        return mask
 
     def _ends(self, zone: str, paired: BoolArray) -> list[FaceEnd]:
         """Where the surface is taken to end: its straight face as drawn goes on along the edge beyond the zone."""
         mesh, ends, surface = self.outline.mesh, list[FaceEnd](), self.surfaces[zone]
         elastic = isinstance(surface, BodySurface) and surface.elastic
         as_drawn = elastic or surface.way == AS_DRAWN
-        drawn = self.held[zone] if as_drawn else self._holding(surface.after(AS_DRAWN))
+        drawn = self.outline.held_nodes(surface if as_drawn else surface.after(AS_DRAWN))
         for last, neighbor in ((2, mesh.elements[:, 2]), (0, mesh.before)):
             for own in np.flatnonzero(paired & ~paired[neighbor]).tolist():
-                beyond, at = int(neighbor[own]), self.state.points[own, last]
-                normal = drawn.normals[own, last]
+                beyond, at, held = (
+                    int(neighbor[own]),
+                    self.state.points[own, last],
+                    (mesh.elements[own, last], 2 - last),
+                )
+                normal = drawn.normals[held]
                 if self._lies_in_face(zone, np.array([own, beyond]), at, normal):
                     along = self.state.points[beyond, last] - at
                     along = along / np.hypot(*along)
-                    foot = at - drawn.gap[own, last] * normal
+                    foot = at - drawn.gap[held] * normal
                     ahead = min(map(float, self._ahead(zone, paired, foot, along, normal)), default=np.inf)
                     apart = self._between_zones(zone, paired, own, neighbor, normal)
                     if ahead == np.inf or apart or self.in_a_zone(beyond):
@@ -415,18 +434,18 @@ class SurfaceGaps(DisplacedSurfaces):
 
         The line is the straight face itself, or is drawn inside it: then they fit with interference.
         """
-        flush = FLUSH * self.problem.size
+        flush = FLUSH * self.size
         if np.abs((self.state.points[elements] - at) @ normal).max() > 2 * flush:
             return False  # nodes are among the samples, up to round-off
-        places = self.outline.sampled(elements).points
+        places = self.outline.sampled(elements)
         gap, normals = self.undeformed(zone, places)
         straight = np.abs(normals - normal)[:, 1:-1].max() <= FLUSH  # at its ends there may be a corner of the surface
         return bool(straight and gap.max() <= flush and np.abs((places - at) @ normal).max() <= flush)
 
     def _ahead(self, zone: str, paired: BoolArray, at: Array, along: Array, normal: Array) -> Iterator[float]:
         """Distances [L] from an end of the zone to its next edges on the same line, and to points of the surface."""
-        flush, surface = FLUSH * self.problem.size, self.surfaces[zone]
-        of_zone = self.outline.sampled(np.flatnonzero(paired)).points.reshape(-1, 2)
+        flush, surface = FLUSH * self.size, self.surfaces[zone]
+        of_zone = self.outline.sampled(np.flatnonzero(paired)).reshape(-1, 2)
         gap, normals = self.undeformed(zone, of_zone)
         points = (of_zone - gap[:, None] * normals)[gap <= flush]
         if isinstance(surface, Polyline | Spline):
@@ -441,6 +460,11 @@ class SurfaceGaps(DisplacedSurfaces):
         return self.outline.shapes @ self.state.displacement
 
     @cached_property
+    def largest(self) -> float:
+        """Largest displacement of a node [L]."""
+        return float(magnitudes(self.state.displacement).max())
+
+    @cached_property
     def _spread(self) -> float:
         """Largest difference of the displacements of two places [L]: translations do not count."""
         return float(np.ptp(self.state.displacement.reshape(-1, 2) @ DIRECTIONS, axis=0).max())
@@ -451,7 +475,7 @@ class SurfaceGaps(DisplacedSurfaces):
         It is a part of that difference, and no more than `LARGEST_PART`: what is deeper can be seen.
         """
         # only rotations and strains cause differences; translations are exact in linear theory
-        size = self.problem.size
+        size = self.size
         turns = [abs(self.tools[name][2]) for name, tool in self.problem.tools.items() if zone in tool.zones]
         return float(
             sum(min(moved / size, LARGEST_PART) * moved for moved in (self._spread, *(turn * size for turn in turns)))
@@ -493,16 +517,27 @@ class SurfaceGaps(DisplacedSurfaces):
                 bonded[own if sides[1] == body else facing[own]] = True
         return bonded
 
-    def _near(self, zone: str) -> BoolArray:
-        """Whether each element (m,) may touch a surface: no place of it is farther from its middle than its length."""
-        near = np.zeros(len(self.state.points), bool)
-        for moved, gap in (
-            (self.state.points, self.undeformed),
-            (self.state.points + self.state.displacement, self.exact),
-        ):
-            length = magnitudes(np.diff(moved, axis=1)).sum(axis=1)
-            near |= gap(zone, moved[:, 1]).gap <= length
-        return near
+    def near(self, zone: str, elements: IntArray) -> IntArray:
+        """Those of elements (k,) that may touch a surface: no place is farther from their middle than their length.
+
+        Both as drawn and after the motion. The gap changes by no more than places move beside the surface.
+        """
+        drawn, surface = self.state.points[elements], self.surfaces[zone]
+        moved = drawn + self.state.displacement[elements]
+        length, after = (magnitudes(places[:, 1:] - places[:, :-1]).sum(axis=1) for places in (drawn, moved))
+        if not len(elements):
+            return elements
+        gap = self.undeformed(zone, drawn[:, 1]).gap
+        near = gap <= length
+        if isinstance(surface, BodySurface):
+            gap = gap if surface.continued is surface else surface.continued.closest(drawn[:, 1]).gap
+        shift = magnitudes(self.way_of_tool(zone).back(moved[:, 1]) - drawn[:, 1])
+        if isinstance(surface, BodySurface) and surface.elastic:
+            shift += MOST_BETWEEN * self.largest
+        unsure = np.flatnonzero(~near & (gap <= after + shift))
+        if len(unsure):
+            near[unsure] = self.exact(zone, moved[unsure, 1]).gap <= after[unsure]
+        return elements[near]
 
 
 def surface_gaps(body: Body, state: BoundaryState, contact: CondensedContact, solution: ContactSolution) -> SurfaceGaps:

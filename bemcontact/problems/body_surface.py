@@ -18,6 +18,7 @@ from bemcontact.problems.edge_places import (
     NormalWeight,
     bent_joints,
     curvatures,
+    nearest_fractions,
     nearest_on,
     normals_at,
     paired_on,
@@ -145,6 +146,10 @@ class BodySurface:
     def other_side(self) -> "BodySurface":
         """The boundary of the first of two elastic bodies, as the surface that this one touches."""
         return BodySurface(body="", elastic=True, edges=self.first, loops=self.first_loops, offset=self.offset)
+
+    def nearest_to(self, points: Array) -> tuple[IntArray, Array]:
+        """Number (k,) of the edge that is nearest to points (k, 2) [L], and the fraction (k,) of its length."""
+        return nearest_fractions(self.edges, points)
 
     def feet(self, points: Array) -> Feet:
         """Places that are nearest to points (k, 2) [L]."""

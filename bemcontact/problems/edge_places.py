@@ -83,11 +83,17 @@ def places_along(edges: Sequence[Edge]) -> EdgePlaces:
 
 def nearest_on(edges: Sequence[Edge], points: Array) -> EdgePlaces:
     """Places of edges that are nearest to points (k, 2) [L]."""
+    return places_at(edges, *nearest_fractions(edges, points))
+
+
+def nearest_fractions(edges: Sequence[Edge], points: Array) -> tuple[IntArray, Array]:
+    """Number (k,) of the edge that is nearest to points (k, 2) [L], and the fraction (k,) of its length."""
     fractions = np.array([edge.curve.nearest(points) for edge in edges])
+    if len(edges) == 1:
+        return np.zeros(len(points), int), fractions[0]
     places = np.array([edge.points(at) for edge, at in zip(edges, fractions, strict=True)])
-    number, rows = magnitudes(points - places).argmin(axis=0), np.arange(len(points))
-    fraction = fractions[number, rows]
-    return EdgePlaces(number, fraction, places[number, rows], normals_at(edges, number, fraction))
+    number = magnitudes(points - places).argmin(axis=0)
+    return number, fractions[number, np.arange(len(points))]
 
 
 def curvatures(edges: Sequence[Edge], places: EdgePlaces) -> Array:

@@ -53,6 +53,24 @@ def contains(corners: Array, point: Array) -> bool:
     return bool(np.count_nonzero(straddles & right) % 2)
 
 
+def winds_once(line: Array, distance: float) -> bool:
+    """Whether a closed polyline (k, 2) surely meets itself nowhere: it winds once about the mean of its corners.
+
+    Each side is seen from there under an angle of the same sense. Then two sides that are not neighbors have another
+    one between them on either way around. They are no nearer to each other than the least distance of a side from the
+    mean times the least sine of an angle, which has to be more than the `distance` [L].
+    """
+    x, y = (line - line[:-1].mean(axis=0)).T
+    turn = x[:-1] * y[1:] - y[:-1] * x[1:]
+    if turn[0] < 0:
+        turn, y = -turn, -y
+    if not turn.min() > 0 or np.count_nonzero((y[:-1] < 0) & (y[1:] >= 0)) != 1:
+        return False
+    away = np.hypot(x, y)
+    sine, sides = (turn / (away[:-1] * away[1:])).min(), np.hypot(x[1:] - x[:-1], y[1:] - y[:-1])
+    return bool(sine * (turn / sides).min() > distance)
+
+
 def _crossings(loops: Sequence[Sequence[Edge]], paths: Sequence[KeyPath]) -> Iterator[Issue]:
     """Issues of edges that meet an earlier edge, or themselves, except at a common end; one for each edge."""
     placed = [(edge, (*path, i)) for loop, path in zip(loops, paths, strict=True) for i, edge in enumerate(loop)]
@@ -90,6 +108,8 @@ def first_meeting(one: Array, other: Array, tolerance: float, *, itself: bool = 
 
     Up to the distance `tolerance` they touch; `itself` tells that both are the same polyline.
     """
+    if not itself and _are_apart(one, other, 2 * tolerance):
+        return None
     rows = max(PAIRS_AT_ONCE // len(other), 1)
     for begin in range(0, len(one) - 1, rows):
         some = one[begin : begin + rows + 1]
@@ -100,6 +120,12 @@ def first_meeting(one: Array, other: Array, tolerance: float, *, itself: bool = 
         if meets.any():
             return points[np.argmax(meets)]
     return None
+
+
+def _are_apart(one: Array, other: Array, distance: float) -> bool:
+    """Whether the bounding boxes of two polylines are farther apart than the distance."""
+    (low, high), (least, most) = ((line.min(axis=0), line.max(axis=0)) for line in (one, other))
+    return bool((low > most + distance).any() or (least > high + distance).any())
 
 
 def _sides_close_by(one: Array, other: Array, distance: float) -> tuple[IntArray, IntArray]:

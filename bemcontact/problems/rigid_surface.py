@@ -1,6 +1,7 @@
 """Rigid surfaces: gap and unit normal, which points from the surface into the body."""
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
 import numpy as np
@@ -37,11 +38,18 @@ class Plane(SmoothSurface):
         """The normal with length 1."""
         return _of_length_one(self.normal)
 
+    @cached_property
+    def _frame(self) -> tuple[Array, Array]:
+        """The point (2,) and the unit normal (2,) as arrays."""
+        return np.array(self.point), np.array(self.unit_normal)
+
     def closest(self, points: Array) -> Closest:
         """Gap and normal at points (k, 2) [L]."""
-        normal = np.array(self.unit_normal)
-        offset = np.asarray(points, float) - np.array(self.point)
-        return Closest(offset @ normal, np.full_like(offset, normal))
+        point, normal = self._frame
+        offset = np.asarray(points, float) - point
+        normals = np.empty_like(offset)
+        normals[:] = normal
+        return Closest(offset @ normal, normals)
 
 
 class Circle(SmoothSurface):

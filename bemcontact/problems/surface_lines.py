@@ -135,10 +135,15 @@ class SmoothSurface(LineSurface):
         normals = way.turned(normals)
         return Closest(gap + np.einsum("kx,kx->k", normals, way.motion_at(points)), normals)
 
-    def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
-        """The nearest face holds both sides of points (k, 2) [L]."""
+    def faces(self, points: Array, inward: Array | None = None, reach: Array | None = None) -> Faces:
+        """The nearest face holds both sides of points (k, 2) [L], whatever the normals of the boundary there."""
         gap, normals = (part[:, None].repeat(3, axis=1) for part in self.held(np.asarray(points, float)))
         return Faces(gap, normals, normals)
+
+    def after(self, way: Way) -> Self:
+        """Copy after another motion beside the body; both remember the places that are nearest to either."""
+        assert self.nearest is not None  # made before it is shared
+        return super().after(way)
 
 
 class Polyline(LineSurface):

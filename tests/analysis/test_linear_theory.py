@@ -8,9 +8,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import bemcontact
-from bemcontact.analysis.linear_theory import LARGE, LARGE_PART, LARGE_ROTATION, Judgment, large_displacements
+from bemcontact.analysis.linear_theory import (
+    LARGE,
+    LARGE_PART,
+    LARGE_ROTATION,
+    Judgment,
+    RateOfChange,
+    contact_strains,
+    large_displacements,
+    most_strained,
+)
 from bemcontact.assessment.penetration import Misfit
 from bemcontact.bem.boundary_values import BoundaryState
+from bemcontact.bem.discretization import body_of
 from bemcontact.problems import Problem
 
 
@@ -26,7 +36,7 @@ def affine(gradient: np.ndarray, unit: float = 1.0, share: float = 1.0) -> Judgm
         points=points, displacement=moved, traction=moved, edge=np.zeros(100, int), edge_names=("all",),
         force_balance=0.0, equilibrium_slack=0.0,
     )  # fmt: skip
-    return large_displacements(state, turns=True, modulus="1")
+    return large_displacements(state, RateOfChange.of(state), turns=True, problem=block(1.0))
 
 
 @pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
@@ -66,6 +76,21 @@ def block(pressure: float, modulus: float = 7.0, size: float = 1.0, **more: obje
             **more,
         }
     )
+
+
+@pytest.mark.parametrize("state", ["plane_stress", "plane_strain"])
+@pytest.mark.parametrize("nu", [-0.9, -0.25, 0.0, 0.3, 0.49])
+def test_no_contact_strain_is_larger_than_its_bound(nu: float, state: str):
+    """The bound sees the largest pressure and change of displacement alone; strains are those of a crooked load."""
+    material = {"young_modulus": 7.0, "poisson_ratio": nu, "state": state}
+    load = {"pressure": {"x": 0.6, "constant": 1.0}}
+    problem = block(1.0, material=material, conditions={"left": {"fixed": True}, "top": load})
+    result = bemcontact.solve(problem)
+    assert result.boundary is not None
+    pressure = result.solution.pressure
+    part = contact_strains(body_of(problem), result.boundary, pressure)[1].max()
+    gradient = RateOfChange.of(result.boundary).gradient.max()
+    assert 0.1 < part <= most_strained(problem, pressure.max(), gradient)
 
 
 @pytest.mark.slow

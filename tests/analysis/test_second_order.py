@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import bemcontact
+from bemcontact.adaptivity.first_sizes import ACROSS, OPPOSED
 from bemcontact.analysis.displaced_body import ProbedBody, StiffnessChange
 from bemcontact.analysis.linear_theory import LARGE, NOTICED
-from bemcontact.analysis.second_order import CHANGED
+from bemcontact.analysis.second_order import CHANGED, across
 from bemcontact.assessment.penetration import Misfit
 from bemcontact.bem.discretization import body_of
 from bemcontact.problems import Problem
@@ -274,3 +275,24 @@ def test_a_strip_that_a_slot_keeps_straight_is_not_withheld(clearance: float, he
     result = bemcontact.solve(problem)
     assert (result.penetration is None) is held
     assert any("surfaces beside it may hold it" in note for note in result.notes) is held
+
+
+@pytest.mark.parametrize("name", ["three_zones", "shrink_fit", "closed_crack"])
+def test_the_thickness_is_the_distance_to_the_nearest_element_that_faces_an_element(name):
+    """As by its definition, element by element; angles that are at their limit but for rounding may count or not."""
+    body = body_of(bemcontact.load(Path("models", "gallery", f"{name}.yaml"), variant="stated mesh"))
+    mesh, (thickness, facing, _) = body.mesh, across(body)
+    at, normals = mesh.nodes[mesh.elements[:, 1]], mesh.normals[:, 1]
+    outer = np.full(len(at), True)
+    for on in (mesh.facing[bond] for bond in body.problem.bonded):  # the halves are one body
+        outer[np.append(np.flatnonzero(on >= 0), on[on >= 0])] = False
+    for i in range(len(at)):
+        away = at[i] - at
+        distance, other = np.hypot(*away.T), outer & outer[i] & (np.arange(len(at)) != i)
+        cosine = away @ normals[i] / np.where(distance > 0, distance, 1.0)
+        most, least = (
+            distance[other & (cosine >= ACROSS + slack) & (normals @ normals[i] < OPPOSED - slack)].min(initial=np.inf)
+            for slack in (1e-9, -1e-9)
+        )
+        assert (1 - 1e-12) * least <= thickness[i] <= (1 + 1e-12) * most
+        assert thickness[i] == np.inf or distance[facing[i]] == pytest.approx(thickness[i], rel=1e-12)
