@@ -1,9 +1,11 @@
 """Studies of parameters: a grid of values, solved by several workers, kept in a folder."""
 
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, nullcontext
 from dataclasses import dataclass, replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -12,7 +14,7 @@ from bemcontact.checks.arguments import ensure_callable, file_path, text_of_argu
 from bemcontact.errors import ProblemError
 from bemcontact.options import AskingKeywords
 from bemcontact.problems.problem import Problem
-from bemcontact.report import folder as folders
+from bemcontact.report.folder_kinds import STUDY, ensure_folder_writable
 from bemcontact.studies.cluster import ensure_dask, rows_by_dask
 from bemcontact.studies.journal import JOURNAL, Journal, opened, recorded
 from bemcontact.studies.outputs import chosen, of_stress
@@ -54,7 +56,9 @@ class Study(StudyTable):
         OSError
             If the folder cannot be written, or holds other files.
         """
-        folders.save_study(self, file_path(folder, "folder"), spec)
+        from bemcontact.report.folder import save_study
+
+        save_study(self, file_path(folder, "folder"), spec)
 
 
 def study(
@@ -127,7 +131,9 @@ def study_of_plan(
     if scheduler is not None:
         ensure_dask()
     if folder is not None:
-        folders.ensure_folder_writable(folder, folders.STUDY)
+        ensure_folder_writable(folder, STUDY)
+        if workers > 1 or scheduler is not None:  # what writes the folder is read while others solve
+            threading.Thread(target=import_module, args=["bemcontact.report.folder"]).start()
     plan = replace(plan, stresses=of_stress(outputs))
     rows = _computed(plan, folder, lambda tasks: _workers(plan, tasks, workers, scheduler), progress)
     problem = plan.problem

@@ -13,7 +13,7 @@ from multiprocessing.connection import Connection
 
 from bemcontact.studies.plan import StudyPlan
 from bemcontact.studies.rows import MemberRow, failed_row
-from bemcontact.studies.work import Task, one_thread, rows_of_task, rows_on_one_thread
+from bemcontact.studies.work import Task, listed_rows, one_thread, rows_of_task, take_one_thread
 
 AHEAD = 2
 """Tasks that wait for each worker."""
@@ -99,16 +99,17 @@ def _submitted(
     """Hand on tasks until so many are running; yield the one that could not be handed on, if a process was ended."""
     while len(running) < most and (task := next(tasks, None)) is not None:
         try:
-            running[pool.submit(rows_on_one_thread, plan, task)] = task
+            running[pool.submit(listed_rows, plan, task)] = task
         except BrokenProcessPool:
             yield task
             return
 
 
 def _begin(ends_with: Connection) -> None:
-    """Set up a worker process: interrupts are for the process that started it, with which it ends."""
+    """Set up a worker process: it takes one thread, and ends with the one that started it, for which interrupts are."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with, args=(ends_with,), daemon=True).start()
+    take_one_thread()
 
 
 def _end_with(ends_with: Connection) -> None:

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 from concurrent.futures.process import ProcessPoolExecutor
@@ -66,3 +68,24 @@ def test_the_number_of_threads_is_as_before_afterwards(monkeypatch: pytest.Monke
     plan = study_plan(CYLINDER.with_value("accuracy", None), {"conditions.top.pressure": [10]})
     assert len(here(plan)) == 1
     assert os.environ["OMP_NUM_THREADS"] == "7"
+
+
+WORKER = """
+import os
+from multiprocessing import Pipe
+from threadpoolctl import threadpool_info
+from bemcontact.studies.workers import _begin
+from bemcontact.threads import WORTH_THREADS, one_thread, workers
+ends_with, alive = Pipe(duplex=False)
+_begin(ends_with)
+with one_thread, one_thread.lifted(WORTH_THREADS):
+    print(workers(), {item["num_threads"] for item in threadpool_info()})
+"""
+
+
+@pytest.mark.slow
+def test_a_worker_takes_one_thread_even_for_large_matrices():
+    """Where the environment gives two: the workers share the processors."""
+    two = os.environ | dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "2")
+    answer = subprocess.run([sys.executable, "-c", WORKER], env=two, capture_output=True, text=True, check=True)
+    assert answer.stdout.split() == ["1", "{1}"]
