@@ -16,7 +16,7 @@ from bemcontact.studies import workers
 from bemcontact.studies.plan import StudyPlan, study_plan
 from bemcontact.studies.rows import MemberRow
 from bemcontact.studies.work import tasks_of
-from bemcontact.studies.workers import rows_by_processes, rows_here
+from bemcontact.studies.workers import Processes, rows_by_processes, rows_here
 
 CYLINDER = bemcontact.load(Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml", variant="paper").with_value(
     "accuracy", 0.01
@@ -44,7 +44,7 @@ def test_two_processes_find_the_same_rows_though_one_is_killed(monkeypatch: pyte
 
     monkeypatch.setattr(workers, "ProcessPoolExecutor", watched)
     rows = list[MemberRow]()
-    for row in rows_by_processes(PLAN, tasks_of(PLAN, [False] * len(PLAN)), 2):
+    for row in rows_by_processes(PLAN, tasks_of(PLAN, [False] * len(PLAN)), Processes(2)):
         rows.append(row)
         if len(rows) == 3:
             os.kill(next(iter(pools[0]._processes)), signal.SIGKILL)
@@ -55,7 +55,7 @@ def test_two_processes_find_the_same_rows_though_one_is_killed(monkeypatch: pyte
 @pytest.mark.slow
 def test_processes_end_when_nobody_wants_more_rows():
     before = set(threading.enumerate())
-    found = rows_by_processes(PLAN, tasks_of(PLAN, [False] * len(PLAN)), 2)
+    found = rows_by_processes(PLAN, tasks_of(PLAN, [False] * len(PLAN)), Processes(2))
     next(found)
     began = time.perf_counter()
     found.close()
