@@ -92,6 +92,7 @@ LATE = {
     ("bem.discretization", "bem.deflected_contours"): "only these need equations, and check starts without",
     ("analysis.result", "analysis.stress_of_bodies"): "stress is computed if it is asked for, and solve starts without",
     ("analysis.result", "analysis.stress_bars"): "likewise",
+    ("runs.study", "report.folder"): "pictures are drawn at the end, and workers start without",
 }
 """(Who imports, what) -> why the import stands where it is used. The command line imports all other rooms so."""
 

@@ -224,7 +224,7 @@ def check_folder(source: Source | None, folder: Path | None, json_file: Path | N
     """Refuse a folder that cannot be written, or that would replace the spec or the file of --json."""
     if folder is None:
         return
-    from bemcontact.report.folder import KINDS, ensure_folder_writable
+    from bemcontact.report.folder_kinds import KINDS, ensure_folder_writable
 
     try:
         target = output.real(folder)

@@ -97,6 +97,10 @@ def study(
         def located(error: ProblemError) -> str:
             return source.located(error) if any(issue.path for issue in error.issues) else str(error)
 
+        def ensure_possible() -> None:
+            with by_option("--vary", located=located):
+                plan.ensure_possible()
+
         begin = time.perf_counter()
         with by_option("--vary"):
             axes = written_axes(vary)
@@ -108,7 +112,8 @@ def study(
         if scheduler is not None and workers is not None:
             raise OptionError("--scheduler and --workers exclude each other: a cluster has its own workers")
         try:
-            done = study_of_plan(plan, shown, out, workers or processors(), scheduler, report, source.as_run())
+            count = workers or processors()
+            done = study_of_plan(plan, shown, out, count, scheduler, report, source.as_run(), ensure_possible)
         except KeyboardInterrupt:
             raise KeyboardInterrupt("" if out is None else GO_ON.format(folder=out)) from None
         seconds = time.perf_counter() - begin

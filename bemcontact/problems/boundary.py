@@ -46,7 +46,7 @@ class Boundary(SpecModel):
     """The boundary of the body: an outer loop of edges, and loops around holes."""
 
     example: ClassVar[str] = "{outer: [{name: bottom, start: [0, 0]}, …]}"
-    inside: ClassVar[tuple[str, ...]] = ("in_bodies",)
+    inside: ClassVar[tuple[str, ...]] = ("in_bodies", "faults")
     other_words: ClassVar[Mapping[str, str]] = dict.fromkeys(
         ("hole", "bore", "inner", "inside"), "holes is a list of holes, each a list of edges, clockwise"
     )
@@ -67,11 +67,18 @@ class Boundary(SpecModel):
 
     @model_validator(mode="after")
     def _encloses_a_body(self) -> Self:
-        """Refuse loops that do not enclose a body; later checks rely on earlier ones."""
+        """Refuse loops that do not enclose a body; a boundary that goes into another problem is not checked again."""
+        if self.faults:
+            raise validation_error("Boundary", self.faults)
+        return self
+
+    @cached_property
+    def faults(self) -> tuple[Issue, ...]:
+        """Issues of loops that do not enclose a body; later checks rely on earlier ones."""
         if self.outer is None:
-            raise validation_error("Boundary", [self._without_edges()])
+            return (self._without_edges(),)
         if issues := [*self._ill_stated()]:
-            raise validation_error("Boundary", issues)
+            return (*issues,)
         loops = [*zip(self.loop_paths, self.loop_specs, strict=True)]
         issues = [
             *_repeated_names(loops),
@@ -85,9 +92,7 @@ class Boundary(SpecModel):
             issues = [*self._with_hints(loop_issues(self.loops, self.loop_paths))]
             for (path, loop), joined in zip(loops, self.loops, strict=True):
                 issues += _misplaced_ends(path, loop, joined)
-        if issues:
-            raise validation_error("Boundary", issues)
-        return self
+        return (*issues,)
 
     def _with_hints(self, issues: Sequence[Issue]) -> Iterator[Issue]:
         """Add to issues of loops the arc that would mend all of them if it ran the other way round its center."""

@@ -561,9 +561,11 @@ class Problem(StatedBodies):
         if not isinstance(changes, Mapping):
             example = "{'material.young_modulus': 70e3, 'material.poisson_ratio': 0.33}"
             raise ProblemError(f"values by key path are needed, such as {example}; found {shown(changes)}")
-        data = self.model_dump()
+        paths = {path: parsed_path(path) for path in changes}
+        changed = {str(keys[0]) for keys in paths.values()}
+        data = {key: getattr(self, key) for key in type(self).model_fields} | self.model_dump(include=changed)
         for path, value in changes.items():
-            data = with_entry(data, existing_path(data, parsed_path(path)), _plain(value))
+            data = with_entry(data, existing_path(data, paths[path]), _plain(value))
         return type(self)(**data)
 
 

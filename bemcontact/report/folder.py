@@ -1,11 +1,8 @@
 """Folders of results, paths, designs, studies and reproductions; a folder is written completely or not at all."""
 
-import json
-import re
 import shutil
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 from bemcontact.adaptivity.mesh_sizes import first_mesh
@@ -37,114 +34,20 @@ from bemcontact.report.figures import (
     states_on,
     vector_graphic,
 )
+from bemcontact.report.folder_kinds import (
+    DESIGN,
+    PATH,
+    PICTURES,
+    REPORT,
+    REPRODUCTION,
+    RESULT,
+    STUDY,
+    Contents,
+    ensure_folder_writable,
+)
 from bemcontact.report.zones import tables_of
-from bemcontact.studies.journal import JOURNAL, is_journal
+from bemcontact.studies.journal import JOURNAL
 from bemcontact.studies.table import StudyTable
-
-PICTURES = "figures"
-"""Name of the folder of pictures."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Contents:
-    """Files of a kind of folder: title, names of page, JSON numbers, others and pictures, and keys of the numbers."""
-
-    title: str
-    page: str
-    numbers: str
-    others: tuple[str, ...] = ()
-    picture: re.Pattern[str]
-    keys: frozenset[str]
-    journal: str = ""
-    """Name of a journal, which is there before the numbers."""
-
-
-REPORT = Contents(
-    title="report",
-    page="report.html",
-    numbers="report.json",
-    others=(
-        "contact.npz",
-        "zones.csv",
-        "intervals.csv",
-        "points.csv",
-        "stress.csv",
-        "largest_stresses.csv",
-        "spec.yaml",
-    ),
-    picture=re.compile(
-        r"(problem|contacts|(pressure|gap)(-\d+)?|deformed|difference|convergence|history-[a-z0-9-]+)\.svg"
-    ),
-    keys=frozenset({"settings", "versions"}),
-)
-"""Folder of a mesh study, or of the comparisons under all load cases."""
-RESULT = Contents(
-    title="result",
-    page="result.html",
-    numbers="result.json",
-    others=("zones.csv", "intervals.csv", "points.csv", "stress.csv", "largest_stresses.csv", "spec.yaml"),
-    picture=re.compile(r"(problem|contacts|deformed|(contact|pressure|gap)(-\d+)?)\.svg"),
-    keys=frozenset({"name", "version", "certified"}),
-)
-"""Folder of a result, or of all load cases."""
-REPRODUCTION = Contents(
-    title="reproduction",
-    page="page.html",
-    numbers="numbers.json",
-    picture=re.compile(r"[a-z-]+-(problem|pressure)\.svg"),
-    keys=frozenset({"reproduced", "refine", "problems", "versions"}),
-)
-"""Folder of the problems of the paper."""
-PATH = Contents(
-    title="path",
-    page="path.html",
-    numbers="path.json",
-    others=("path.csv", "spec.yaml"),
-    picture=re.compile(r"(problem|animation|states|peak|force|moment|pressure|contact-\d+)\.svg"),
-    keys=frozenset({"key", "start", "end", "states"}),
-)
-"""Folder of a load path."""
-DESIGN = Contents(
-    title="design",
-    page="design.html",
-    numbers="design.json",
-    others=("design.csv",),
-    picture=re.compile(r"(pressure|profile)\.svg"),
-    keys=frozenset({"goal", "zone", "profile", "before", "after"}),
-)
-"""Folder of a designed gap."""
-STUDY = Contents(
-    title="study",
-    page="study.html",
-    numbers="study.json",
-    others=("study.csv", "study.parquet", "spec.yaml", JOURNAL),
-    picture=re.compile(r"\d+\.svg"),
-    keys=frozenset({"axes", "columns", "rows"}),
-    journal=JOURNAL,
-)
-"""Folder of a study of parameters."""
-KINDS = {kind.title: kind for kind in (REPORT, RESULT, REPRODUCTION, PATH, DESIGN, STUDY)}
-"""Title -> kind of folder."""
-
-
-def ensure_folder_writable(folder: Path, contents: Contents = REPORT) -> None:
-    """Check that a folder is new, empty, or holds only an earlier output of the same kind, which is replaced.
-
-    `OSError` with the reason if not.
-    """
-    output.ensure_folder_place(folder)
-    present = [*folder.iterdir()] if folder.is_dir() else []
-    foreign = [*_foreign(folder, contents)]
-    if foreign:
-        raise FileExistsError(
-            f"{folder} holds {foreign[0]}, which is not part of a {contents.title}; name a new or an empty folder"
-        )
-    begun = bool(contents.journal) and is_journal(folder / contents.journal)
-    if present and not begun and not _is_ours(folder / contents.numbers, contents):
-        raise FileExistsError(
-            f"{folder} is not empty and has no {contents.numbers} of bemcontact; name a new folder, or one with an "
-            f"earlier {contents.title}"
-        )
 
 
 def save(study: MeshStudy, folder: Path, spec: str | None = None) -> None:
@@ -266,27 +169,3 @@ def _written(
         (temporary / contents.page).write_text(text, encoding="utf-8", newline="\n")
         yield temporary
         ensure_folder_writable(folder, contents)
-
-
-def _foreign(folder: Path, contents: Contents) -> Iterator[Path]:
-    """List what does not belong into a folder of a kind."""
-    if not folder.is_dir():
-        return
-    for path in sorted(folder.iterdir()):
-        if path.name == PICTURES and path.is_dir():
-            yield from (
-                picture
-                for picture in sorted(path.iterdir())
-                if not (contents.picture.fullmatch(picture.name) and picture.is_file())
-            )
-        elif path.name not in (contents.page, contents.numbers, *contents.others) or not path.is_file():
-            yield path
-
-
-def _is_ours(path: Path, contents: Contents) -> bool:
-    """Whether a file holds the numbers of a folder of this kind."""
-    try:
-        numbers = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return False
-    return isinstance(numbers, dict) and numbers.keys() >= contents.keys

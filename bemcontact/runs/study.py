@@ -1,9 +1,11 @@
 """Studies of parameters: a grid of values, solved by several workers, kept in a folder."""
 
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, nullcontext
 from dataclasses import dataclass, replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -12,15 +14,22 @@ from bemcontact.checks.arguments import ensure_callable, file_path, text_of_argu
 from bemcontact.errors import ProblemError
 from bemcontact.options import AskingKeywords
 from bemcontact.problems.problem import Problem
-from bemcontact.report import folder as folders
+from bemcontact.report.folder_kinds import STUDY, ensure_folder_writable
 from bemcontact.studies.cluster import ensure_dask, rows_by_dask
 from bemcontact.studies.journal import JOURNAL, Journal, opened, recorded
 from bemcontact.studies.outputs import chosen, of_stress
 from bemcontact.studies.plan import StudyPlan, study_plan
 from bemcontact.studies.rows import MemberRow, row_from
 from bemcontact.studies.table import StudyTable, sorted_rows
-from bemcontact.studies.work import tasks_of
-from bemcontact.studies.workers import Rows, broken_pipes_are_errors, rows_by_processes, rows_here
+from bemcontact.studies.work import Task, tasks_of
+from bemcontact.studies.workers import (
+    Processes,
+    Rows,
+    broken_pipes_are_errors,
+    rows_by_processes,
+    rows_here,
+    started,
+)
 
 MOST_WORKERS = 1000
 """Largest number of processes; more members at once need a cluster."""
@@ -54,7 +63,9 @@ class Study(StudyTable):
         OSError
             If the folder cannot be written, or holds other files.
         """
-        folders.save_study(self, file_path(folder, "folder"), spec)
+        from bemcontact.report.folder import save_study
+
+        save_study(self, file_path(folder, "folder"), spec)
 
 
 def study(
@@ -118,18 +129,26 @@ def study_of_plan(
     scheduler: str | None,
     progress: Progress | None,
     spec: str | None = None,
+    ensure_possible: Callable[[], None] | None = None,
 ) -> Study:
     """Solve the members of a plan that the journal of the folder does not have, and write the folder.
 
-    Errors as of `study`; `spec` is the text of the problem as run.
+    Errors as of `study`; `spec` is the text of the problem as run. `ensure_possible` checks the values, as the method
+    of the plan does, while processes get ready.
     """
     workers = whole_number(workers, "number of workers", 1, MOST_WORKERS)
     if scheduler is not None:
         ensure_dask()
     if folder is not None:
-        folders.ensure_folder_writable(folder, folders.STUDY)
+        ensure_folder_writable(folder, STUDY)
     plan = replace(plan, stresses=of_stress(outputs))
-    rows = _computed(plan, folder, lambda tasks: _workers(plan, tasks, workers, scheduler), progress)
+    rows = _recorded(plan, folder)
+    tasks = [*tasks_of(plan, [number in rows for number in range(len(plan))])]
+    with started(1 if scheduler else workers, len(tasks)) as processes:
+        (ensure_possible or plan.ensure_possible)()
+        if folder is not None and (processes or scheduler):  # what writes the folder is read while others solve
+            threading.Thread(target=import_module, args=["bemcontact.report.folder"]).start()
+        rows = _computed(plan, folder, rows, _solved(plan, tasks, processes, scheduler), progress)
     problem = plan.problem
     done = Study(name=problem.title, units=problem.units, axes=plan.axes, outputs=outputs, rows=rows)
     if folder is not None:
@@ -138,26 +157,31 @@ def study_of_plan(
     return done
 
 
-def _workers(plan: StudyPlan, tasks: Iterator[Any], workers: int, scheduler: str | None) -> Rows:
-    """Who solves the tasks."""
+def _solved(plan: StudyPlan, tasks: Sequence[Task], processes: Processes | None, scheduler: str | None) -> Rows:
+    """Rows of tasks as they are solved: on a cluster, by processes, or here."""
     if scheduler is not None:
         return rows_by_dask(plan, tasks, scheduler)
-    return rows_here(plan, tasks) if workers == 1 else rows_by_processes(plan, tasks, workers)
+    return rows_here(plan, tasks) if processes is None else rows_by_processes(plan, tasks, processes)
+
+
+def _recorded(plan: StudyPlan, folder: Path | None) -> dict[int, MemberRow]:
+    """Rows of members in the journal of a folder, by number; one with more outputs than are asked for is used too."""
+    kept = {} if folder is None else recorded(folder / JOURNAL)
+    pairs = zip(plan.keys(), replace(plan, stresses=True).keys(), strict=True) if kept else ()
+    found = {i: key for i, pair in enumerate(pairs) for key in pair if key in kept}
+    return {i: row_from(kept[key], i, plan.values(i)) for i, key in found.items()}
 
 
 def _computed(
-    plan: StudyPlan, folder: Path | None, by: Callable[[Iterator[Any]], Rows], progress: Progress | None
+    plan: StudyPlan, folder: Path | None, known: Mapping[int, MemberRow], new: Rows, progress: Progress | None
 ) -> tuple[MemberRow, ...]:
-    """Rows of all members: those in the journal of the folder, and the others as they are solved."""
-    keys, with_stresses = plan.keys(), replace(plan, stresses=True).keys()
+    """Rows of all members: those that are known, and new ones as they are solved, which the journal gets."""
+    rows, keys = dict(known), plan.keys()
     with broken_pipes_are_errors(), _journal(folder) as journal:
-        kept = {} if folder is None else recorded(folder / JOURNAL)
-        found = {i: key for i, pair in enumerate(zip(keys, with_stresses, strict=True)) for key in pair if key in kept}
-        rows = {i: row_from(kept[key], i, plan.values(i)) for i, key in found.items()}
         pace = _Pace(total=len(plan), before=len(rows), progress=progress)
         pace.say(len(rows))
-        with closing(by(tasks_of(plan, [number in rows for number in range(len(plan))]))) as solved:
-            for row in solved:
+        with closing(new):
+            for row in new:
                 rows[row.number] = row
                 if journal is not None:
                     journal.add(keys[row.number], row)

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from bemcontact.errors import ProblemError
-from bemcontact.serialization import json_text
-from bemcontact.studies.rows import MemberRow
+from bemcontact.serialization import Leaf, json_text
 
 JOURNAL = "members.jsonl"
 """Name of the journal in the folder of a study."""
@@ -59,7 +58,7 @@ class Journal:
     def __init__(self, file: IO[bytes]) -> None:
         self._file, self._synced = file, time.monotonic()
 
-    def add(self, key: str, row: MemberRow) -> None:
+    def add(self, key: str, row: Leaf) -> None:
         """Write the row of a member."""
         self._file.write(f"{json_text({'key': key, 'row': row.to_dict()}, None)}\n".encode())
         self._file.flush()

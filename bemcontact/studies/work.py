@@ -127,9 +127,15 @@ class _SharedMatrices:
             yield from ((number, (together, place)) for place, number in enumerate(numbers))
 
 
+def take_one_thread() -> None:
+    """Let assembly and linear algebra of this process use one thread from now on, for the workers share processors."""
+    os.environ[THREADS] = "1"
+    threadpool_limits(limits=1)
+
+
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Let assembly and linear algebra use one thread, for the workers share the processors."""
+    """Let assembly and linear algebra use one thread, and as many as before afterwards."""
     before = os.environ.get(THREADS)
     os.environ[THREADS] = "1"
     try:
@@ -142,7 +148,12 @@ def one_thread() -> Iterator[None]:
             os.environ[THREADS] = before
 
 
+def listed_rows(plan: StudyPlan, task: Task) -> list[MemberRow]:
+    """Solve a task in a process that takes one thread."""
+    return [*rows_of_task(plan, task)]
+
+
 def rows_on_one_thread(plan: StudyPlan, task: Task) -> list[MemberRow]:
-    """Solve a task in a worker process."""
+    """Solve a task in a process of somebody else, such as a worker of a cluster."""
     with one_thread():
-        return [*rows_of_task(plan, task)]
+        return listed_rows(plan, task)

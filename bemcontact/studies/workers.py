@@ -8,12 +8,12 @@ from collections import deque
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from multiprocessing.connection import Connection
 
 from bemcontact.studies.plan import StudyPlan
 from bemcontact.studies.rows import MemberRow, failed_row
-from bemcontact.studies.work import Task, one_thread, rows_of_task, rows_on_one_thread
+from bemcontact.studies.work import Task, listed_rows, one_thread, rows_of_task, take_one_thread
 
 AHEAD = 2
 """Tasks that wait for each worker."""
@@ -46,32 +46,66 @@ def rows_here(plan: StudyPlan, tasks: Iterable[Task]) -> Rows:
             yield from rows_of_task(plan, task)
 
 
-def rows_by_processes(plan: StudyPlan, tasks: Iterable[Task], workers: int) -> Rows:
+class Processes(AbstractContextManager["Processes"]):
+    """Some processes that take one thread each, and end with this one, however it ends."""
+
+    def __init__(self, count: int):
+        context = multiprocessing.get_context("spawn")
+        self.count = count
+        self._ends_with, self._alive = context.Pipe(duplex=False)
+        self.pool = ProcessPoolExecutor(count, context, initializer=_begin, initargs=(self._ends_with,))
+
+    def get_ready(self) -> None:
+        """Start the processes, which read their modules; otherwise each starts with its first task."""
+        with suppress(BrokenProcessPool):  # the first task will find out
+            for _ in range(self.count):
+                self.pool.submit(os.getpid)
+
+    def __exit__(self, *_: object) -> None:
+        self._alive.close()  # the processes end, even in the middle of a task
+        self.pool.shutdown(cancel_futures=True)
+        self._ends_with.close()
+
+
+@contextmanager
+def started(workers: int, tasks: int) -> Iterator[Processes | None]:
+    """Processes for so many tasks that get ready at once; None for one worker, which is this process."""
+    if workers == 1:
+        yield None
+        return
+    with broken_pipes_are_errors(), Processes(min(workers, max(tasks, 1))) as processes:
+        if tasks:
+            processes.get_ready()
+        yield processes
+
+
+def rows_by_processes(plan: StudyPlan, tasks: Iterable[Task], processes: Processes) -> Rows:
     """Solve tasks by several processes, in any order.
 
     If a process is ended from outside, its tasks are solved again, each member by itself; a member of which the process
-    ends again is a row that failed. If this process ends, however it ends, the others end too.
+    ends again is a row that failed.
     """
-    waiting = iter(tasks)
-    while lost := (yield from _until_broken(plan, waiting, workers)):
+    waiting, count = iter(tasks), processes.count
+    while lost := (yield from _until_broken(plan, waiting, processes)):
         for task in lost:
-            for again in (yield from _until_broken(plan, iter([task]), 1)):
+            for again in (yield from _until_broken(plan, iter([task]), Processes(1))):
                 for number in again.wanted:
                     alone = Task(group=(number,), wanted=(number,))
-                    if (yield from _until_broken(plan, iter([alone]), 1)):
+                    if (yield from _until_broken(plan, iter([alone]), Processes(1))):
                         yield failed_row(number, plan.values(number), ENDED)
+        processes = Processes(count)
 
 
-def _until_broken(plan: StudyPlan, tasks: Iterator[Task], workers: int) -> Generator[MemberRow, None, Sequence[Task]]:
+def _until_broken(
+    plan: StudyPlan, tasks: Iterator[Task], processes: Processes
+) -> Generator[MemberRow, None, Sequence[Task]]:
     """Solve tasks until there is none, or a process is ended; return the tasks that were lost with it."""
-    context = multiprocessing.get_context("spawn")
-    ends_with, alive = context.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(workers, context, initializer=_begin, initargs=(ends_with,))
     running = dict[Future[list[MemberRow]], Task]()
     lost = deque[Task]()
-    try:
+    with processes:
         while True:
-            lost.extend(_submitted(pool, plan, tasks, running, AHEAD * workers) if not lost else ())
+            most = AHEAD * processes.count
+            lost.extend(_submitted(processes.pool, plan, tasks, running, most) if not lost else ())
             if not running:
                 return lost
             finished, _ = wait(running, return_when=FIRST_COMPLETED)
@@ -83,10 +117,6 @@ def _until_broken(plan: StudyPlan, tasks: Iterator[Task], workers: int) -> Gener
                     lost.append(task)
                     continue
                 yield from rows
-    finally:
-        alive.close()  # the processes end, even in the middle of a task
-        pool.shutdown(cancel_futures=True)
-        ends_with.close()
 
 
 def _submitted(
@@ -99,16 +129,17 @@ def _submitted(
     """Hand on tasks until so many are running; yield the one that could not be handed on, if a process was ended."""
     while len(running) < most and (task := next(tasks, None)) is not None:
         try:
-            running[pool.submit(rows_on_one_thread, plan, task)] = task
+            running[pool.submit(listed_rows, plan, task)] = task
         except BrokenProcessPool:
             yield task
             return
 
 
 def _begin(ends_with: Connection) -> None:
-    """Set up a worker process: interrupts are for the process that started it, with which it ends."""
+    """Set up a worker process: it takes one thread, and ends with the one that started it, for which interrupts are."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with, args=(ends_with,), daemon=True).start()
+    take_one_thread()
 
 
 def _end_with(ends_with: Connection) -> None:

@@ -98,6 +98,19 @@ def test_check_and_help_import_nothing_of_studies():
     assert answer.stderr == "[]\n"
 
 
+@pytest.mark.slow
+def test_a_folder_is_checked_without_what_draws(tmp_path: Path):
+    """So a wrong one is refused at once, and workers need not wait until all that draws is read."""
+    (tmp_path / "other.txt").write_text("mine", encoding="utf-8")
+    answer = in_one_process(
+        f"study {CYLINDER} --vary conditions.top.pressure=20 --out {tmp_path}",
+        f"solve {CYLINDER} --out {tmp_path}",
+        code="print('matplotlib' in sys.modules, file=sys.stderr)",
+    )
+    assert answer.stdout == "status 2\n" * 2
+    assert answer.stderr.splitlines()[-1] == "False"
+
+
 def started(*arguments: object) -> subprocess.Popen[str]:
     root = str(Path(bemcontact.__file__).parents[1])
     handled = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"

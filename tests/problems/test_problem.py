@@ -61,6 +61,22 @@ def issues(**changes):
     return [str(issue) for issue in caught.value.issues]
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "kept"),
+    [
+        ("conditions.top.pressure", 20, ["boundary", "material"]),
+        ("material.young_modulus", 2000, ["boundary"]),
+        ("boundary.outer.top.elements", 5, ["material"]),
+    ],
+)
+def test_a_change_keeps_the_parts_that_it_does_not_touch(key, value, kept):
+    """They are not checked again. The problem is the one whose file has the value."""
+    problem = Problem(**parts())
+    changed = problem.with_value(key, value)
+    assert all(getattr(changed, part) is getattr(problem, part) for part in kept)
+    assert changed == bemcontact.loads(bemcontact.dumps(problem), set={key: value})
+
+
 def test_problem_of_objects_equals_the_problem_of_its_data():
     problem = Problem(**parts())
     assert Problem(**problem.model_dump()) == problem

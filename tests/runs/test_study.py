@@ -2,6 +2,7 @@
 
 import csv
 import json
+import multiprocessing
 import signal
 from collections.abc import Iterator
 from pathlib import Path
@@ -58,6 +59,18 @@ def test_a_folder_has_the_same_numbers_as_the_study(tmp_path: Path):
     assert [*rows[0]] == [*table]
     assert [float(row["peak"]) if row["peak"] else None for row in rows] == table["peak"]
     assert "pulls the body off" in rows[-1]["message"]
+
+
+@pytest.mark.slow
+def test_a_wrong_value_is_refused_while_processes_get_ready(tmp_path: Path):
+    """No process and no folder is left; right values are solved by the same number of processes."""
+    place = tmp_path / "study"
+    with pytest.raises(bemcontact.ProblemError, match="young_modulus"):
+        bemcontact.study(CYLINDER, {MODULUS: [900.0, -1.0]}, out=place, workers=2)
+    assert multiprocessing.active_children() == []
+    assert not place.exists()
+    first = bemcontact.study(CYLINDER, {MODULUS: [900.0, 1000.0]}, out=place, workers=2)
+    assert bemcontact.study(CYLINDER, {MODULUS: [900.0, 1000.0]}, out=place).rows == first.rows
 
 
 @pytest.mark.slow

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 from concurrent.futures.process import ProcessPoolExecutor
@@ -14,7 +16,7 @@ from bemcontact.studies import workers
 from bemcontact.studies.plan import StudyPlan, study_plan
 from bemcontact.studies.rows import MemberRow
 from bemcontact.studies.work import tasks_of
-from bemcontact.studies.workers import rows_by_processes, rows_here
+from bemcontact.studies.workers import Processes, rows_by_processes, rows_here
 
 CYLINDER = bemcontact.load(Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml", variant="paper").with_value(
     "accuracy", 0.01
@@ -42,7 +44,7 @@ def test_two_processes_find_the_same_rows_though_one_is_killed(monkeypatch: pyte
 
     monkeypatch.setattr(workers, "ProcessPoolExecutor", watched)
     rows = list[MemberRow]()
-    for row in rows_by_processes(PLAN, tasks_of(PLAN, [False] * len(PLAN)), 2):
+    for row in rows_by_processes(PLAN, tasks_of(PLAN, [False] * len(PLAN)), Processes(2)):
         rows.append(row)
         if len(rows) == 3:
             os.kill(next(iter(pools[0]._processes)), signal.SIGKILL)
@@ -53,7 +55,7 @@ def test_two_processes_find_the_same_rows_though_one_is_killed(monkeypatch: pyte
 @pytest.mark.slow
 def test_processes_end_when_nobody_wants_more_rows():
     before = set(threading.enumerate())
-    found = rows_by_processes(PLAN, tasks_of(PLAN, [False] * len(PLAN)), 2)
+    found = rows_by_processes(PLAN, tasks_of(PLAN, [False] * len(PLAN)), Processes(2))
     next(found)
     began = time.perf_counter()
     found.close()
@@ -66,3 +68,24 @@ def test_the_number_of_threads_is_as_before_afterwards(monkeypatch: pytest.Monke
     plan = study_plan(CYLINDER.with_value("accuracy", None), {"conditions.top.pressure": [10]})
     assert len(here(plan)) == 1
     assert os.environ["OMP_NUM_THREADS"] == "7"
+
+
+WORKER = """
+import os
+from multiprocessing import Pipe
+from threadpoolctl import threadpool_info
+from bemcontact.studies.workers import _begin
+from bemcontact.threads import WORTH_THREADS, one_thread, workers
+ends_with, alive = Pipe(duplex=False)
+_begin(ends_with)
+with one_thread, one_thread.lifted(WORTH_THREADS):
+    print(workers(), {item["num_threads"] for item in threadpool_info()})
+"""
+
+
+@pytest.mark.slow
+def test_a_worker_takes_one_thread_even_for_large_matrices():
+    """Where the environment gives two: the workers share the processors."""
+    two = os.environ | dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "2")
+    answer = subprocess.run([sys.executable, "-c", WORKER], env=two, capture_output=True, text=True, check=True)
+    assert answer.stdout.split() == ["1", "{1}"]
