@@ -2,12 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.unit_pressures import UnitPressures
@@ -243,13 +243,19 @@ class ContactPoints:
     @cached_property
     def consistent(self) -> Array:
         """(n, n) [L]: Σ over elements of ∫ h hᵀ |dx/dξ| dξ, [SS92] (24)-(25)."""
-        xi, weights = reference_element.gauss_legendre(CONSISTENT_ORDER)
-        N, tangents = reference_element.values(xi), self.mesh.tangents_at(xi)
-        jacobian = np.hypot(tangents[..., 0], tangents[..., 1])
-        local = np.einsum("gk,gl,mg,g->mkl", N, N, jacobian, weights)
+        one_more, xi = len(self) + 1, reference_element.gauss_legendre(CONSISTENT_ORDER)[0]
         owner = np.full((max(self.zone, default=0) + 1, len(self.mesh.elements), 3), len(self))  # else one too many
         owner[self.zone_of_share, self.element, self.local] = self.point
-        of_zone, element = np.nonzero((owner < len(self)).any(axis=2))
-        i, J = owner[of_zone, element], np.zeros((len(self) + 1, len(self) + 1))
-        np.add.at(J, (i[:, :, None], i[:, None, :]), local[element])
-        return J[:-1, :-1]
+        of_zone, element = (owner < len(self)).any(axis=2).nonzero()
+        i = owner[of_zone, element]
+        local = magnitudes(self.mesh.tangents_at(xi)[element]) @ _products_of_shapes()
+        place = i[:, :, None] * one_more + i[:, None]
+        return np.bincount(place.ravel(), local.ravel(), one_more**2).reshape(one_more, -1)[:-1, :-1]
+
+
+@lru_cache(maxsize=1)
+def _products_of_shapes() -> Array:
+    """N_k N_l times the weights of Gauss points (q, 9) for the consistent weights."""
+    xi, weights = reference_element.gauss_legendre(CONSISTENT_ORDER)
+    N = reference_element.values(xi)
+    return (N[:, :, None] * N[:, None] * weights[:, None, None]).reshape(-1, 9)

@@ -111,8 +111,8 @@ def unseen_ways(changes: Array, part: float) -> Array:
     Singular values up to a part of the largest one are zeros.
     """
     k = changes.shape[1]
-    if not k:
-        return np.zeros((0, 0))
+    if not k or (k == 1 and changes.any()):  # one motion has no smaller singular value than the largest
+        return np.zeros((k, 0))
     values, vectors = np.linalg.svd(np.vstack([changes, np.zeros((k, k))]), full_matrices=False)[1:]
     return vectors[values <= part * values[0]].T
 

@@ -41,8 +41,10 @@ def with_chosen_position(
     p = np.where(p > VANISHED * p.max(), p, 0.0)
     held = p > 0 if closed is None else (p > 0) | closed
     motions = _unseen(scaled, held)
+    if not motions.size:
+        return solution
     limits = _limits(scaled, held, scaled.gap(p, a), motions)
-    if not motions.size or not (ways := _open_ways(limits, motions)).any():
+    if not (ways := _open_ways(limits, motions)).any():
         return solution
     a = _nearest(scaled, a, limits, motions)
     if not scaled.residual(p, a) <= ACCEPTED:
