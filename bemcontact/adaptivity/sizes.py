@@ -120,7 +120,8 @@ class Loop:
         if not offset.size:
             return offset
         if positions.min() - starts.max() >= -length and positions.max() - starts.min() < length:
-            return np.add(offset, length, out=offset, where=offset < 0)  # a tenth of the time of `mod`
+            offset += (offset < 0) * length  # a tenth of the time of `mod`
+            return offset
         return np.mod(offset, length)
 
     def without_idle(self, limits: Array) -> Array:
@@ -208,7 +209,7 @@ class Loop:
             if not coarse.any():
                 break
             middle = (samples[:-1] + samples[1:])[coarse] / 2
-            order = np.argsort(np.append(np.arange(len(samples)), np.flatnonzero(coarse) + 0.5))
+            order = np.append(np.arange(len(samples)), np.flatnonzero(coarse) + 0.5).argsort(kind="stable")
             samples = np.append(samples, middle)[order]
             size = np.append(size, self.size_at(middle, limits, layers))[order]
         between = (np.searchsorted(samples, self.joints[1:-1], side="right") - 1).tolist()
