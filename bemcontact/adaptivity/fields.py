@@ -288,8 +288,9 @@ class MeshDifference:
         that the force itself changes little.
         """
         errors = np.zeros((len(self.coarse.in_zone), len(self.coarse.mesh.elements)))
+        of_answer = self._energy(*self._fields)
         for own, *both in zip(errors, *(answer.force_influence() for answer in self.pair), strict=False):
-            own += np.sqrt(self._energy(*self._fields) * self._energy(*both))
+            own += np.sqrt(of_answer * self._energy(*both))
         return errors
 
     def _energy(self, one: tuple[Array, Array], two: tuple[Array, Array], *, turned: bool = True) -> Array:

@@ -101,7 +101,7 @@ class Loop:
         (low, high, size), least = limits.T, np.empty(len(positions))
         for first in range(0, len(positions), IN_CACHE):
             some = slice(first, first + IN_CACHE)
-            offset = self._forwards(positions[some, None] - low)
+            offset = self._forwards(positions[some], low)
             beyond = self.length - offset
             np.minimum(beyond, np.subtract(offset, high - low, out=offset), out=beyond)
             np.maximum(beyond, 0.0, out=beyond)
@@ -109,16 +109,19 @@ class Loop:
             beyond += size
             beyond.min(axis=1, out=least[some])
         for layer in layers:
-            offset = self._forwards(positions - layer.position)
+            offset = self._forwards(positions, np.array([layer.position]))[:, 0]
             after = offset <= self.length / 2
             np.minimum(least, layer.at(np.where(after, offset, offset - self.length), self.growth), out=least)
         return least
 
-    def _forwards(self, offset: Array) -> Array:
-        """Distances forwards along the loop [L]: differences of positions modulo its length."""
-        length = self.length
-        if offset.min(initial=0.0) >= -length and offset.max(initial=0.0) < length:
-            return np.where(offset < 0, offset + length, offset)  # a tenth of the time of `mod`
+    def _forwards(self, positions: Array, starts: Array) -> Array:
+        """Distances (k, l) [L] forwards along the loop from starts (l,) to positions (k,), modulo its length."""
+        length, offset = self.length, positions[:, None] - starts
+        if not offset.size:
+            return offset
+        if positions.min() - starts.max() >= -length and positions.max() - starts.min() < length:
+            offset += (offset < 0) * length  # a tenth of the time of `mod`
+            return offset
         return np.mod(offset, length)
 
     def without_idle(self, limits: Array) -> Array:
@@ -148,20 +151,23 @@ class Loop:
         least = np.empty(len(at))
         least[order] = np.minimum(before[here - 1] + self.growth * at, after[here + 1] - self.growth * at)
         least = np.where(wide, np.nan, least[: len(limits)])
-        inside = self._forwards(low[:, None] - low[wide]) <= (high - low)[wide]
+        inside = self._forwards(low, low[wide]) <= (high - low)[wide]
         return np.minimum(least, np.where(inside, size[wide], np.inf).min(axis=1, initial=np.inf))
 
     def _idle(self, limit: Array, others: Array) -> bool:
         """Whether others (l, 3) allow no larger size than a limit (3,) anywhere on it: together they cover it."""
         low, high, size = others.T
         reach = ((1 + SAME) * limit[2] - size) / self.growth
-        begin = np.mod(low - reach - limit[0], self.length)
-        begin, end = np.stack([[begin, begin - self.length], [begin, begin - self.length] + (high - low + 2 * reach)])
-        order = np.argsort(begin, axis=None)
-        begin = np.append(begin.ravel()[order], np.inf)
-        far = np.append(-np.inf, np.maximum.accumulate(end.ravel()[order]))
-        width = limit[1] - limit[0]
-        return not np.any((far < width) & (begin > 0) & (begin > far))
+        width, begin = limit[1] - limit[0], np.mod(low - reach - limit[0], self.length)
+        begin = np.concatenate([begin, begin - self.length])
+        end = begin + np.tile(high - low + 2 * reach, 2)
+        own = (begin <= width) & (end >= 0)
+        begin, end = begin[own], end[own]
+        if not (begin <= 0).any() or end.max() < width:
+            return False
+        order = begin.argsort()
+        far = np.maximum.accumulate(end[order])
+        return not np.any((far[:-1] < width) & (begin[order[1:]] > 0) & (begin[order[1:]] > far[:-1]))
 
     def element_ends(
         self, limits: Array, layers: Sequence[Layers], marks: Iterable[float]
@@ -183,6 +189,8 @@ class Loop:
     def _corners(self, start: float, stop: float, marks: Array) -> Array:
         """Positions of the start of an edge, of the marks inside it, and of its end."""
         same = SAME * (stop - start)
+        if not len(marks):
+            return np.array([start, stop])
         own = np.unique(marks[(marks > start + same) & (marks < stop - same)])
         return np.concatenate([[start], own[np.diff(own, prepend=start) > same], [stop]])
 
@@ -201,10 +209,12 @@ class Loop:
             if not coarse.any():
                 break
             middle = (samples[:-1] + samples[1:])[coarse] / 2
-            at = np.flatnonzero(coarse) + 1
-            samples, size = np.insert(samples, at, middle), np.insert(size, at, self.size_at(middle, limits, layers))
-        between = np.searchsorted(samples, self.joints[1:-1], side="right") - 1
-        yield from zip(np.split(samples, between), np.split(size, between), strict=True)
+            order = np.append(np.arange(len(samples)), np.flatnonzero(coarse) + 0.5).argsort(kind="stable")
+            samples = np.append(samples, middle)[order]
+            size = np.append(size, self.size_at(middle, limits, layers))[order]
+        between = (np.searchsorted(samples, self.joints[1:-1], side="right") - 1).tolist()
+        for first, last in pairwise([0, *between, len(samples)]):
+            yield samples[first:last], size[first:last]
 
 
 def _divided(corners: Array, samples: Array, size: Array) -> Array:

@@ -107,13 +107,13 @@ class ZoneRun:
 def zone_runs(body: Body) -> Iterator[ZoneRun]:
     """List the unbroken pieces of all contact zones of a body on its mesh, by their numbers."""
     mesh, points, problem = body.mesh, body.points, body.problem
-    lengths, zones, off = mesh.lengths, [*problem.zones], _held_off(body)
+    lengths, zones, off, every = mesh.lengths, [*problem.zones], _held_off(body), body.outline.edges
     for number, elements in enumerate(points.elements_of_run):
         if not len(elements):
             continue  # a corner of the body that stands on a face by itself
         breaks = (np.diff(mesh.edge[elements]) != 0) | (np.diff(elements) != 1)
         pieces = np.split(elements, np.flatnonzero(breaks) + 1)
-        edges = tuple(problem.edge(mesh.edge_names[mesh.edge[piece[0]]]) for piece in pieces)
+        edges = tuple(every[mesh.edge[piece[0]]] for piece in pieces)
         closed = bool(np.isfinite(points.run_length[number]))
         breakpoints = tuple(np.append(mesh.fractions[piece, 0], mesh.fractions[piece[-1], 2]) for piece in pieces)
         outside = mesh.before[elements[0]], mesh.elements[elements[-1], 2]
@@ -125,7 +125,7 @@ def zone_runs(body: Body) -> Iterator[ZoneRun]:
             arc=np.concatenate([[0.0], np.cumsum(lengths[elements])]),
             breakpoints=breakpoints,
             turn=_turns(edges, closed=closed),
-            beside=() if closed else tuple(problem.edge(mesh.edge_names[mesh.edge[i]]) for i in outside),
+            beside=() if closed else tuple(every[mesh.edge[i]] for i in outside),
             off=tuple(node in off[points.zone_of_run[number]] for node in (int(elements[0]), int(outside[1]))),
         )
 

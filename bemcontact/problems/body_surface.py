@@ -25,7 +25,15 @@ from bemcontact.problems.edge_places import (
     places_along,
 )
 from bemcontact.problems.rigid_surface import RigidSurface, Shape
-from bemcontact.problems.surface_lines import Closest, Faces, between_normals, pressed_normals, ridge_beside, sees_ridge
+from bemcontact.problems.surface_lines import (
+    Closest,
+    Faces,
+    between_normals,
+    is_tilted,
+    pressed_normals,
+    ridge_beside,
+    sees_ridge,
+)
 from bemcontact.problems.way import AS_DRAWN, Way
 
 AT_END = 1e-9
@@ -321,7 +329,8 @@ class BodySurface:
         which, smooth = within.argmax(axis=1), straight & np.isfinite(within).any(axis=1)
         offset = points - np.array([ridge.point for ridge in ridges])[which]
         after, before = np.moveaxis(np.array([ridge.normals for ridge in ridges])[which], 1, 0)
-        seen = sees_ridge(points, feet.edge, points - offset, own[:, 1], held.normals[:, 1])
+        among = smooth & is_tilted(own, held.normals)
+        seen = sees_ridge(points, feet.edge, points - offset, own[:, 1], held.normals[:, 1], among)
         for column in range(3):
             there = ridge_beside(offset, own[:, column], held.normals[:, column], before, after, seen)
             held.put(smooth & there.counts, column, there.gap + self.offset, there.normals, there.faces)

@@ -3,7 +3,7 @@
 from bisect import bisect
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import islice
+from itertools import islice, pairwise
 from math import dist
 from typing import ClassVar, Self
 
@@ -13,7 +13,7 @@ from pydantic import model_validator
 
 from bemcontact.errors import Issue, KeyPath, ProblemError, dotted
 from bemcontact.problems.curves import CircularArc, Curve, Edge, EllipticArc, Pair
-from bemcontact.problems.geometry import AnyEdge, Arc, Grading, LoopSpec, Mirror, Place
+from bemcontact.problems.geometry import MOST_ELEMENTS, AnyEdge, Arc, LoopSpec, Mirror, Place
 from bemcontact.problems.loop_closure import JOINT_TOLERANCE, gap_issues, other_way_round
 from bemcontact.problems.loops import loop_issues
 from bemcontact.problems.outlines import OutlineError, issue_at, mirror_image, mirrored_loop, plain_loop
@@ -219,6 +219,8 @@ def _with_ends(edge: AnyEdge, ends: Sequence[float] | None) -> AnyEdge:
     if ends is None:
         return edge
     inner = tuple(map(float, ends))
+    if len(inner) < MOST_ELEMENTS and all(0 < end < 1 for end in inner):  # else the copy is refused
+        return edge.model_copy(update={"elements": len(inner) + 1, "grading": None, "ends_at": inner})
     return type(edge)(**{**edge.model_dump(), "elements": len(inner) + 1, "grading": None, "ends_at": inner})
 
 
@@ -316,8 +318,7 @@ def _joined(loop: Sequence[AnyEdge]) -> tuple[Edge, ...]:
     for i, edge in enumerate(loop):
         start, end = joints[i], joints[(i + 1) % len(loop)]
         curve = edge.curve(start, end)
-        grading = edge.grading or Grading(ratio=1.0, towards="start")
-        towards = grading.towards
+        ratio, towards = (edge.grading.ratio, edge.grading.towards) if edge.grading else (1.0, "start")
         edges.append(
             Edge(
                 name=edge.name,
@@ -325,7 +326,7 @@ def _joined(loop: Sequence[AnyEdge]) -> tuple[Edge, ...]:
                 start=start,
                 end=end,
                 elements=edge.elements,
-                ratio=grading.ratio,
+                ratio=ratio,
                 towards=towards if isinstance(towards, str) else _fraction(curve, towards),
                 ends_at=tuple(sorted(_fraction(curve, place) for place in edge.ends_at)),
             )
@@ -338,9 +339,20 @@ def _fraction(curve: Curve, place: Place) -> float:
     return curve.fraction_at(place) if isinstance(place, tuple) else place
 
 
+def _well_placed(edge: AnyEdge) -> bool:
+    """Whether element ends of an edge are fractions that are far enough from each other, and not too many."""
+    places = [place for _, place in edge.places if not isinstance(place, tuple)]
+    if len(places) < len(edge.places):
+        return False
+    apart = min(after - before for before, after in pairwise(sorted([0.0, *places, 1.0])))
+    return apart >= APART and (edge.elements is None or edge.elements > len(places))
+
+
 def _misplaced_ends(path: KeyPath, loop: Sequence[AnyEdge], joined: Sequence[Edge]) -> Iterator[Issue]:
     """Issues of element ends that are off the edge, at its ends, repeated, or more than the elements."""
     for i, (edge, shape) in enumerate(zip(loop, joined, strict=True)):
+        if _well_placed(edge):
+            continue
         taken = [0.0, 1.0]
         for key, place in edge.places:
             fraction = _fraction(shape.curve, place)

@@ -376,9 +376,11 @@ def graded_ends(elements: int, ratio: float, towards: str | float, places: Seque
     The nearest free end moves to each place, and the others move in proportion. Places ascend, are inside (0, 1), and
     are fewer than the elements. A place `towards` which elements are graded is one of the ends.
     """
+    fixed = [*places] if isinstance(towards, str) else sorted({*places, towards})
+    if len(fixed) == elements - 1:
+        return np.array([0.0, *fixed, 1.0])
     ends = np.concatenate([[0.0], np.cumsum(graded_lengths(elements, ratio, towards))])
     ends[-1] = 1.0
-    fixed = [*places] if isinstance(towards, str) else sorted({*places, towards})
     return moved_onto(ends, fixed)
 
 

@@ -178,8 +178,12 @@ class Polyline(LineSurface):
         If a corner is nearest, the normal is radial from the corner. On a corner, up to round-off, the normal is the
         bisector of the normals of both segments.
         """
-        points, (corners, _, lefts, _, _) = np.asarray(points, float), self.sides
-        nearest, corner, feet = self._nearest(points)
+        points = np.asarray(points, float)
+        return self._closest(points, self._nearest(points))
+
+    def _closest(self, points: Array, place: "_Place") -> Closest:
+        """Gap and normal as of `closest`, at points whose nearest place is known."""
+        (corners, _, lefts, _, _), (nearest, corner, feet) = self.sides, place
         before, after = lefts[np.clip(corner - 1, 0, len(lefts) - 1)], lefts[np.clip(corner, 0, len(lefts) - 1)]
         offset = points - feet
         side = np.where(np.einsum("ki,ki->k", offset, before + after) < 0, -1.0, 1.0)
@@ -193,21 +197,20 @@ class Polyline(LineSurface):
 
     def faces_as_drawn(self, points: Array, inward: Array, reach: Array) -> Faces:
         """Those of a line with corners at points (k, 2) [L]."""
-        near = self.closest(points)
-        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in near)
+        place = self._nearest(points)
+        gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in self._closest(points, place))
         if len(self.points) == 2:
             return Faces(gap, normals, normals)
-        self._hold_in_grooves(points, inward, gap, normals)
+        self._hold_in_grooves(points, place, inward, gap, normals)
         held = Faces(gap, normals, normals.copy())
-        self._press_on_ridges(points, inward, reach, held)
+        self._press_on_ridges(points, place.segment, inward, reach, held)
         return held
 
-    def _hold_in_grooves(self, points: Array, inward: Array, gap: Array, normals: Array) -> None:
+    def _hold_in_grooves(self, points: Array, place: "_Place", inward: Array, gap: Array, normals: Array) -> None:
         """Put the face to which each side is turned: that of the nearest segment, or of one that rises beside it."""
         # At a corner of the body the other face counts beyond the corner of the surface too. If a corner of the body
         # stands on the nearest face, between two others, the face in the middle holds it.
-        corners, directions, lefts, low, high = self.sides
-        nearest, corner, _ = self._nearest(points)
+        (corners, directions, lefts, low, high), (nearest, corner, _) = self.sides, place
         last = len(lefts) - 1
         facing = np.clip(nearest[:, None] + np.array([0, -1, 1]), 0, last)
         offset = points[:, None] - corners[facing]
@@ -224,9 +227,14 @@ class Polyline(LineSurface):
             normals[held, column] = lefts[facing[held, chosen]]
             gap[held, column] = np.einsum("ki,ki->k", offset[held, chosen], normals[held, column])
 
-    def _press_on_ridges(self, points: Array, inward: Array, reach: Array, held: Faces) -> None:
-        """Put the normals of the body where a convex corner of the surface presses on it."""
-        ridges, distances = self._ridges_beside(points)
+    def _press_on_ridges(self, points: Array, nearest: IntArray, inward: Array, reach: Array, held: Faces) -> None:
+        """Put the normals of the body where a convex corner of the surface presses on it.
+
+        `nearest` (k,) is the segment that is nearest to each point.
+        """
+        ridges, distances = self._ridges_beside(points, nearest)
+        if not np.isfinite(distances).any():
+            return
         turn, lefts = cross(inward[:, 0], inward[:, 1]), self.sides.lefts
         own, straight = pressed_normals(inward, turn, held)
         within = [_dot(between_normals(own[:, 1], lefts[i + 1], lefts[i]), own[:, 1]) for i in ridges.T]
@@ -236,7 +244,8 @@ class Polyline(LineSurface):
         chosen = np.where(flat, distances.argmin(axis=1), within.argmax(axis=1))
         which = ridges[np.arange(len(points)), chosen]
         before, after, offset = lefts[which], lefts[which + 1], points - self.sides.corners[which + 1]
-        seen = sees_ridge(points, self._nearest(points)[0], points - offset, own[:, 1], held.normals[:, 1])
+        among = smooth & ~flat & is_tilted(own, held.normals)
+        seen = sees_ridge(points, nearest, points - offset, own[:, 1], held.normals[:, 1], among)
         for column in range(3):
             pressing, gap, on, there = ridge_beside(
                 offset, own[:, column], held.normals[:, column], before, after, seen
@@ -244,12 +253,11 @@ class Polyline(LineSurface):
             held.put(smooth & ~flat & there, column, gap, pressing, on)
             held.put(flat, column, _dot(offset, pressing), pressing, pressing)
 
-    def _ridges_beside(self, points: Array) -> tuple[IntArray, Array]:
+    def _ridges_beside(self, points: Array, nearest: IntArray) -> tuple[IntArray, Array]:
         """Inner corners (k, 2), counted from 0, at the ends of the nearest segment; distance [L], infinite of others.
 
         Others are those that are not convex.
         """
-        nearest = self._nearest(points)[0]
         ends = np.stack([nearest, nearest + 1], axis=1)
         distances = magnitudes(points[:, None] - self.sides.corners[ends])
         distances[~np.pad(~self._concave, 1)[ends]] = np.inf
@@ -279,8 +287,8 @@ class Polyline(LineSurface):
         last = len(self._concave) - 1
         return self._concave[np.clip([segment - 1, segment], 0, last)]
 
-    def _nearest(self, points: Array) -> tuple[IntArray, IntArray, Array]:
-        """Nearest segment (k,), its corner that is nearest or -1 (k,), and the nearest point of the line (k, 2).
+    def _nearest(self, points: Array) -> "_Place":
+        """Places of the line that are nearest to points (k, 2).
 
         A point that is opposite to the end of a segment up to round-off is opposite to the segment: the direction from
         the corner to a point close to it would be that of round-off.
@@ -293,7 +301,7 @@ class Polyline(LineSurface):
         beyond, rows = np.abs(held - along) > slack, np.arange(len(points))
         nearest = np.argmin(magnitudes(points[:, None] - feet) + slack * beyond, axis=1)
         corner = np.where(beyond[rows, nearest], nearest + (along > high)[rows, nearest], -1)
-        return nearest, corner, feet[rows, nearest]
+        return _Place(nearest, corner, feet[rows, nearest])
 
     def _nearest_corner(self, points: Array) -> tuple[IntArray, Array]:
         """Nearest inner corner (k,), counted from 0, and its distance (k,) [L]."""
@@ -304,6 +312,14 @@ class Polyline(LineSurface):
     def _extent(self, points: Array) -> float:
         """Extent of line and points [L], the scale of round-off."""
         return float(np.ptp(np.concatenate([points, self.sides.corners]), axis=0).max(initial=0.0))
+
+
+class _Place(NamedTuple):
+    """Nearest segment (k,), its corner that is nearest or -1 (k,), and the nearest point of the line (k, 2)."""
+
+    segment: IntArray
+    corner: IntArray
+    point: Array
 
 
 class _Sides(NamedTuple):
@@ -497,8 +513,15 @@ class RidgeGap(NamedTuple):
     counts: BoolArray
 
 
-def sees_ridge(points: Array, face: IntArray, ridge: Array, body: Array, held: Array) -> BoolArray:
+def is_tilted(body: Array, held: Array) -> BoolArray:
+    """Whether a side of places (k,), with normals (k, 3, 2) into the body, is tilted against the face that holds it."""
+    return (np.einsum("kai,kai->ka", held, body) < LIES_ON).any(axis=1)
+
+
+def sees_ridge(points: Array, face: IntArray, ridge: Array, body: Array, held: Array, among: BoolArray) -> BoolArray:
     """Whether places (k,) of a body come nearer to a ridge, at (k, 2) for each, than any place that lies on their face.
+
+    It is found `among` (k,) some of them, since it takes long, and said of the others.
 
     Where the body is parallel to a face between a place and the ridge, it comes to lie on this face there first, as a
     roller does on a flat one: the ridge presses on nothing behind. `face` (k,) numbers the nearest faces, `body` (k, 2)
@@ -507,8 +530,10 @@ def sees_ridge(points: Array, face: IntArray, ridge: Array, body: Array, held: A
     away, seen = np.hypot(*(points - ridge).T), np.ones(len(points), bool)
     beside = abs(cross(points - ridge, held)) > ON_CORNER * float(np.ptp(points, axis=0).max(initial=0.0))
     lies = beside & (_dot(held, body) >= LIES_ON)
-    for number in np.unique(face[lies]).tolist():
-        flat, own = points[lies & (face == number)], np.flatnonzero(face == number)
+    for number in np.unique(face[among]).tolist():
+        flat, own = points[lies & (face == number)], np.flatnonzero(among & (face == number))
+        if not len(flat):
+            continue
         nearest = magnitudes(flat[:, None] - ridge[own]).min(axis=0)
         seen[own] = away[own] <= nearest
     return seen

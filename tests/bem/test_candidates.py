@@ -4,13 +4,16 @@ import itertools
 
 import numpy as np
 import pytest
+import several_bodies
 from bodies import arc, even, mesh_of
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from several_bodies import HELD, block, circle, elastic
 
 from bemcontact import problem, solve
 from bemcontact.bem.discretization import body_of
 from bemcontact.problems import Polyline, Problem
+from bemcontact.problems.body_surface import BodySurface
 
 PRESSURE = 3.0
 FILLED = {"temperature": {"expansion": 1e-5, "change": (1 - 2 * 0.3) * PRESSURE / 1000.0 / 1e-5}}
@@ -315,3 +318,18 @@ def test_the_zones_of_one_edge_have_their_own_pressures_at_a_node():
     assert whole.peak is not None
     assert quarter.peak is not None
     assert whole.peak.pressure == pytest.approx(quarter.peak.pressure, rel=error)
+
+
+def test_points_of_two_bodies_have_the_faces_of_all_nodes():
+    """Faces that are found at the nodes of a contact alone are those that are found at all nodes of both bodies."""
+    roller, rail = circle("rim", 2.0, start=-90.0, elements=12), block((-3, 3), (-4, -2), (4, 4, 12, 4))
+    weight = {"gravity": {"density": 1e-3, "acceleration": [0, -1]}}
+    bodies = {"roller": elastic({"outer": [roller]}, loads=weight), "rail": elastic(rail, HELD)}
+    both = several_bodies.problem(bodies, foot=[["roller/rim"], ["rail/top"]])
+    body = body_of(both)
+    surface, points = both.zones["foot"].surface, body.points
+    assert isinstance(surface, BodySurface)
+    gap, normals, faces = surface.faces(body.mesh.nodes, *body.outline.sides)
+    assert len(points)
+    for known, every in ((points.gap, gap), (points.normals, normals), (points.faces, faces)):
+        assert known == pytest.approx(every[points.node, 1], abs=1e-15)

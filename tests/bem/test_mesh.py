@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from bodies import mesh_of, rectangle
 
 from bemcontact.bem import mesh
 from bemcontact.problems import Problem
@@ -36,3 +37,10 @@ def test_a_place_in_a_sentence_has_no_round_off():
     built = mesh.build(Problem.model_validate({**made, "contact_zones": zones}))
     assert built.place(built.nodes[np.argmin(built.nodes[:, 1])]) == (0.0, -4.0)
     assert built.place([1e-14, 0.004]) == (0.0, 0.004)
+
+
+def test_nodes_of_elements_are_those_of_their_rows():
+    """Each node once, in order, also those that two elements share."""
+    shape = mesh_of(rectangle(3.0, 1.0, [0, 0.3, 0.6, 1], [0, 1]))
+    for elements in ([], [0], [1, 0], [7, 0, 3]):
+        assert shape.nodes_of(np.array(elements, int)).tolist() == np.unique(shape.elements[elements]).tolist()

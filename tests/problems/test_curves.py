@@ -271,3 +271,10 @@ def test_refinement_cuts_the_elements_between_the_places():
         name="edge", curve=Segment(start=(0, 0), end=(2, 0)), start=(0, 0), end=(2, 0), elements=3, ends_at=(0.1, 0.4)
     )
     np.testing.assert_allclose(edge.breakpoints(2), [0, 0.05, 0.1, 0.25, 0.4, 0.7, 1], rtol=1e-15)
+
+
+@pytest.mark.parametrize("towards", ["start", "both", 0.25])
+def test_ends_that_are_all_given_are_exactly_these(towards: str | float):
+    """No grading is left to be seen, whatever it is."""
+    places = [0.1, 0.25, 0.7]
+    assert graded_ends(4, 50.0, towards, places).tolist() == [0.0, *places, 1.0]
