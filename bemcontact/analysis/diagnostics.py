@@ -165,10 +165,12 @@ def drawn_inside(contact: CondensedContact, solution: ContactSolution) -> Iterat
     """Note a surface that is drawn so far inside a free body that the body does not deform by it, but moves out."""
     if not contact.free_motions or not solution.pressure.any():
         return
-    elastic = solution.displacement - contact.rigid_motions @ solution.rigid_amplitudes
     deepest = int(np.argmin(np.where(solution.pressure > 0, contact.initial_gap, np.inf)))
-    depth, moved = -float(contact.initial_gap[deepest]), float(abs(elastic).max())
-    if depth > MOVED_OUT * moved:
+    depth = -float(contact.initial_gap[deepest])
+    if depth <= 0:
+        return
+    elastic = solution.displacement - contact.rigid_motions @ solution.rigid_amplitudes
+    if depth > MOVED_OUT * float(abs(elastic).max()):
         (x, y), name = contact.points[deepest].tolist(), contact.zone_names[contact.zone[deepest]]
         yield (
             f"the surface of '{name}' is drawn {depth:.3g} {contact.units.get('length', '')}".rstrip()

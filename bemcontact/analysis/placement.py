@@ -52,8 +52,7 @@ def placement(
     off, beside = _slipped(first)
     if len(off):
         return _off_the_surface(first, int(off[np.argmax(first.moved.distance[off])])), ()
-    notes = tuple(_overhangs(first, beside))
-    moved = first.moved
+    notes, moved = tuple(_overhangs(first, beside)) if len(beside) else (), first.moved
     moved.change[beside] = 0.0
     load = load_after(gaps, body, contact, solution, moved, first.noted)
     push = load.copy()  # nothing holds the unseen motions

@@ -50,12 +50,12 @@ class Definiteness:
         A, spread, reach = S[:, None] * (D[:, None] * M) * S, 1.0, np.ones(n)
         K, terms, Z = (A + A.T) / 2, np.abs(A), np.eye(n)
         if k := ell.shape[1]:
-            ell = ell / np.linalg.norm(ell, axis=0)
+            ell = ell / np.sqrt((ell * ell).sum(axis=0))
             sizes, (reflectors, factors, *_) = np.linalg.svd(ell, compute_uv=False), geqrf(ell)
             spread = float(sizes[0] / sizes[-1]) if sizes[-1] else np.inf
             Z, half = (_times_q(part, reflectors, factors)[:, k:] for part in (Z, K))
             K = _times_q(half.T, reflectors, factors)[:, k:]
-            reach = np.minimum(np.linalg.norm(Z, axis=1) + n * EPS * spread, 1.0)
+            reach = np.minimum(np.sqrt((Z * Z).sum(axis=1)) + n * EPS * spread, 1.0)
         smallest = least_eigenvalue(K)
         round_off = n * EPS * spread * float((terms.sum(axis=0) + terms.sum(axis=1)).max()) / 2
         return cls(scales=S, reach=reach, eigenvalue=smallest, certain=smallest - round_off, form=K, space=Z)

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.outline import Outline
@@ -80,14 +80,14 @@ class DisplacedSurfaces:
         """Distance (...) [L] of points (..., 2) from the undisplaced surface, and the normals there."""
         return _closest(self.surfaces[zone], points)
 
-    def tool_motion(self, zone: str, points: Array, inward: Array | None = None) -> Array:
+    def tool_motion(self, zone: str, points: Array) -> Array:
         """Displacement (..., 2) [L] of a surface at points (..., 2): that of its tool, or of the other elastic body.
 
-        Of the latter at the nearest places, or at the pairs of points with normals `inward` (..., 2) into their body.
+        Of the latter at the nearest places.
         """
         surface = self.surfaces[zone]
         if isinstance(surface, BodySurface) and surface.elastic:
-            return self._motion_of_body(surface, points, inward)
+            return self._motion_of_body(surface, points)
         way = self.way_of_tool(zone)
         return np.zeros_like(points) if way == AS_DRAWN else way.motion_of(points - surface.way.step)
 
@@ -99,13 +99,15 @@ class DisplacedSurfaces:
                 return Way(x, y, turn, tool.point or (0.0, 0.0))
         return AS_DRAWN
 
-    def _motion_of_body(self, surface: BodySurface, points: Array, inward: Array | None = None) -> Array:
+    def _motion_of_body(self, surface: BodySurface, points: Array) -> Array:
         """Displacement (..., 2) [L] of an elastic body at places opposite to points (..., 2)."""
-        flat = points.reshape(-1, 2)
-        edge, fraction = surface.nearest_to(flat) if inward is None else surface.pairs(flat, inward.reshape(-1, 2))[:2]
-        element, xi = self.outline.elements_at([edge.name for edge in surface.edges], edge, fraction)
-        values = np.einsum("ki,kix->kx", reference_element.values(xi), self.state.displacement[element])
-        return values.reshape(points.shape)
+        edges = [edge.name for edge in surface.edges]
+        places = self.outline.elements_at(edges, *surface.nearest_to(points.reshape(-1, 2)))
+        return self.motion_at(*places).reshape(points.shape)
+
+    def motion_at(self, element: IntArray, xi: Array) -> Array:
+        """Displacement (k, 2) [L] at local coordinates (k,) of elements (k,)."""
+        return np.einsum("ki,kix->kx", reference_element.values(xi), self.state.displacement[element])
 
     def turn_of(self, surface: BodySurface, points: Array, normals: Array) -> Array:
         """Change (k, 2) of normals (k, 2) of an elastic body at points (k, 2) [L], as it deforms."""

@@ -32,6 +32,10 @@ ROUGH = 1e-7
 """Difference of the unit normals of two edges below which they meet smoothly."""
 
 
+OnEdges = tuple[IntArray, Array]
+"""Numbers (k,) of the edges of a surface, and fractions (k,) of their lengths."""
+
+
 class Places(NamedTuple):
     """Places (k, q, 2) [L] on elements, with unit normals (k, q, 2) into the body."""
 
@@ -109,7 +113,10 @@ class Outline:
         """Element (k,) and local coordinate (k,) at fractions (k,) of edges, by their numbers (k,) in `names`."""
         element, mesh = np.zeros(len(edge), int), self.mesh
         for number, name in enumerate(names):
-            own, on = np.flatnonzero(mesh.edge == mesh.edge_names.index(name)), edge == number
+            on = edge == number
+            if not on.any():
+                continue
+            own = np.flatnonzero(mesh.edge == mesh.edge_names.index(name))
             at = np.searchsorted(mesh.fractions[own, 2], fractions[on])
             element[on] = own[np.minimum(at, len(own) - 1)]
         first, middle, last = mesh.fractions[element].T
@@ -163,8 +170,8 @@ class Outline:
         for of, known in self._held_nodes:
             if of is surface:
                 return known
-        # one face of a smooth surface holds both sides of a node, however the body is turned there
-        held = surface.faces(self.mesh.nodes, *(() if isinstance(surface, SmoothSurface) else self.sides))
+        smooth = isinstance(surface, SmoothSurface)  # one face holds both sides, however the body is turned there
+        held = surface.faces(self.mesh.nodes) if smooth else surface.faces(self.mesh.nodes, *self.sides)
         self._held_nodes.appendleft((surface, held))
         return held
 
@@ -178,6 +185,15 @@ class Outline:
 
         At nodes they are those of contact points. Between them each place has the face to which it is turned.
         """
+        return self._seen(surface, elements)[0]
+
+    def opposite(self, surface: BodySurface, elements: IntArray) -> tuple[IntArray, Array]:
+        """Element and local coordinate (17 k,) of the pairs of the samples of elements (k,) on an elastic body."""
+        opposite = self._seen(surface, elements)[1]
+        assert opposite is not None
+        return self.elements_at([edge.name for edge in surface.edges], *opposite)
+
+    def _seen(self, surface: AnyShape, elements: IntArray) -> tuple[Faces, OnEdges | None]:
         for of, at, known in self._known_faces:
             if of is surface and np.array_equal(at, elements):
                 return known
@@ -186,22 +202,30 @@ class Outline:
         return found
 
     @cached_property
-    def _known_faces(self) -> deque[tuple[AnyShape, IntArray, Faces]]:
+    def _known_faces(self) -> deque[tuple[AnyShape, IntArray, tuple[Faces, OnEdges | None]]]:
         """Those that were asked for last: many states on one mesh ask for the same."""
         return deque(maxlen=KEPT)
 
-    def _faces(self, surface: AnyShape, elements: IntArray) -> Faces:
-        points = self.sampled(elements)
-        flat, before, turned = points.reshape(-1, 2), 0, ()
-        if not isinstance(surface, SmoothSurface):  # nodes say where the body lies on a face
+    def _faces(self, surface: AnyShape, elements: IntArray) -> tuple[Faces, OnEdges | None]:
+        """Faces (k, 17), and the pairs of the samples on an elastic body."""
+        points, before, opposite = self.sampled(elements), 0, None
+        flat = points.reshape(-1, 2)
+        if isinstance(surface, SmoothSurface):
+            held = surface.faces(flat)
+        else:  # nodes say where the body lies on a face
             inward, (beside, reach) = np.repeat(self.inward(elements).reshape(-1, 1, 2), 2, axis=1), self.sides
-            before, turned = len(reach), (np.concatenate([beside, inward]), np.append(reach, np.zeros(len(flat))))
+            before, turned, reach = len(reach), np.concatenate([beside, inward]), np.append(reach, np.zeros(len(flat)))
             flat = np.concatenate([self.mesh.nodes, flat])
-        held = surface.faces(flat, *turned)
+            if isinstance(surface, BodySurface) and surface.elastic:
+                pairs = surface.pairs(flat, turned[:, 0])
+                held = surface.faces(flat, turned, reach, pairs)
+                opposite = pairs.edge[before:], pairs.fraction[before:]
+            else:
+                held = surface.faces(flat, turned, reach)
         own = Faces(*(part[before:, 0].reshape(points.shape[:-1] + part.shape[2:]) for part in held))
         for part, at_nodes in zip(own, self.held_nodes(surface), strict=True):
             part[:, NODES] = at_nodes[self.mesh.elements[elements], [2, 0, 0]]
-        return own
+        return own, opposite
 
     @cached_property
     def sides(self) -> tuple[Array, Array]:

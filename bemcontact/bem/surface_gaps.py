@@ -152,8 +152,10 @@ class SurfaceGaps(DisplacedSurfaces):
         """Gap (k, q) [L] of elements (k,) as contact sees it, ε + n·(u - w), with the normals n of contact."""
         surface, outline, moved = self.surfaces[zone], self.outline, self._displacement[elements]
         held = outline.faces(surface, elements)
-        if isinstance(surface, BodySurface) or self.way_of_tool(zone) != AS_DRAWN:
-            moved = moved - self.tool_motion(zone, outline.sampled(elements), outline.inward(elements))
+        if isinstance(surface, BodySurface) and surface.elastic:
+            moved = moved - self.motion_at(*outline.opposite(surface, elements)).reshape(moved.shape)
+        elif self.way_of_tool(zone) != AS_DRAWN:
+            moved = moved - self.tool_motion(zone, outline.sampled(elements))
         return held._replace(gap=held.gap + scalar_products(held.normals, moved))
 
     def _against(self, zone: str, elements: IntArray) -> Array:

@@ -18,8 +18,8 @@ from bemcontact.problems.edge_places import (
     NormalWeight,
     bent_joints,
     curvatures,
-    nearest_fractions,
     nearest_on,
+    nearest_points,
     normals_at,
     paired_on,
     places_along,
@@ -157,7 +157,7 @@ class BodySurface:
 
     def nearest_to(self, points: Array) -> tuple[IntArray, Array]:
         """Number (k,) of the edge that is nearest to points (k, 2) [L], and the fraction (k,) of its length."""
-        return nearest_fractions(self.edges, points)
+        return nearest_points(self.edges, points)[:2]
 
     def feet(self, points: Array) -> Feet:
         """Places that are nearest to points (k, 2) [L]."""
@@ -183,10 +183,14 @@ class BodySurface:
 
     def _outside(self, points: Array) -> BoolArray:
         """Whether points (k, 2) are outside the body, for an end of some of its edges does not tell."""
-        every = tuple(chain.from_iterable(self.loops))
-        if len(self.edges) == len(every) or not len(points):
+        if not len(points) or len(self.edges) == len(self._whole.edges):
             return np.zeros(len(points), bool)
-        return replace(self, edges=every, nearest={}).feet(points).gap > 0
+        return self._whole.feet(points).gap > 0
+
+    @cached_property
+    def _whole(self) -> "BodySurface":
+        """The surface with all edges of the body."""
+        return replace(self, edges=tuple(chain.from_iterable(self.loops)), nearest={})
 
     def pairs(self, points: Array, inward: Array | None = None) -> Feet:
         """Places that form pairs with points (k, 2) [L] of the first side, and the common normals there.
@@ -280,8 +284,8 @@ class BodySurface:
         feet = self.feet(points)
         return Closest(feet.gap + self.offset, feet.normals)
 
-    def faces(self, points: Array, inward: Array, reach: Array) -> Faces:
-        """Find the faces that hold points (k, 2) [L], as of `LineSurface`.
+    def faces(self, points: Array, inward: Array, reach: Array, pairs: Feet | None = None) -> Faces:
+        """Find the faces that hold points (k, 2) [L], as of `LineSurface`; `pairs` with them, if these are known.
 
         A point on a corner of this body has the edge to which each side of it, with normals (k, 2, 2) into its own
         body, is turned. So has a corner of the other body that stands in a concave one, up to the distance `reach`
@@ -290,7 +294,7 @@ class BodySurface:
         """
         way, displaced = self.way, points
         points, inward = way.back(points), way.turned(inward, -1.0)
-        pairs = self.pairs(points, inward[:, 0])
+        pairs = pairs or self.pairs(points, inward[:, 0])
         gap, normals = (np.repeat(part[:, None], 3, axis=1) for part in (pairs.gap + self.offset, pairs.normals))
         turns = abs(cross(inward[:, 0], inward[:, 1])) > CORNER
         after = self.pairs(points[turns], inward[turns, 1])

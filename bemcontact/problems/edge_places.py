@@ -83,17 +83,19 @@ def places_along(edges: Sequence[Edge]) -> EdgePlaces:
 
 def nearest_on(edges: Sequence[Edge], points: Array) -> EdgePlaces:
     """Places of edges that are nearest to points (k, 2) [L]."""
-    return places_at(edges, *nearest_fractions(edges, points))
+    number, fraction, places = nearest_points(edges, points)
+    return EdgePlaces(number, fraction, places, normals_at(edges, number, fraction))
 
 
-def nearest_fractions(edges: Sequence[Edge], points: Array) -> tuple[IntArray, Array]:
-    """Number (k,) of the edge that is nearest to points (k, 2) [L], and the fraction (k,) of its length."""
-    fractions = np.array([edge.curve.nearest(points) for edge in edges])
+def nearest_points(edges: Sequence[Edge], points: Array) -> tuple[IntArray, Array, Array]:
+    """Points (k, 2) of edges that are nearest to points (k, 2) [L], by numbers (k,) of the edges and fractions (k,)."""
+    fractions = [edge.curve.nearest(points) for edge in edges]
+    places = [edge.points(at) for edge, at in zip(edges, fractions, strict=True)]
     if len(edges) == 1:
-        return np.zeros(len(points), int), fractions[0]
-    places = np.array([edge.points(at) for edge, at in zip(edges, fractions, strict=True)])
-    number = magnitudes(points - places).argmin(axis=0)
-    return number, fractions[number, np.arange(len(points))]
+        return np.zeros(len(points), int), fractions[0], places[0]
+    number = np.array([magnitudes(points - there) for there in places]).argmin(axis=0)
+    own = number, np.arange(len(points))
+    return number, np.array(fractions)[own], np.array(places)[own]
 
 
 def curvatures(edges: Sequence[Edge], places: EdgePlaces) -> Array:
