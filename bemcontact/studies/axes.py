@@ -5,6 +5,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, cast
 
 import numpy as np
@@ -47,7 +48,7 @@ class Axis:
     values: tuple[Any, ...]
     title: str = ""
 
-    @property
+    @cached_property
     def name(self) -> str:
         """Title; without one the key, of several keys what is particular in the first and how many more there are."""
         if self.title or len(self.keys) == 1:
@@ -65,7 +66,7 @@ class Axis:
         """Keys with commas between them."""
         return ",".join(self.keys)
 
-    @property
+    @cached_property
     def paths(self) -> tuple[KeyPath, ...]:
         """The keys as paths."""
         return tuple(map(parsed_path, self.keys))
