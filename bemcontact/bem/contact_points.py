@@ -246,11 +246,12 @@ class ContactPoints:
         one_more, xi = len(self) + 1, reference_element.gauss_legendre(CONSISTENT_ORDER)[0]
         owner = np.full((max(self.zone, default=0) + 1, len(self.mesh.elements), 3), len(self))  # else one too many
         owner[self.zone_of_share, self.element, self.local] = self.point
-        of_zone, element = (owner < len(self)).any(axis=2).nonzero()
+        of_zone, element = np.nonzero((owner < len(self)).any(axis=2))
         i = owner[of_zone, element]
         local = magnitudes(self.mesh.tangents_at(xi)[element]) @ _products_of_shapes()
         place = i[:, :, None] * one_more + i[:, None]
-        return np.bincount(place.ravel(), local.ravel(), one_more**2).reshape(one_more, -1)[:-1, :-1]
+        sums = np.bincount(place.ravel(), local.ravel(), one_more**2).astype(float)
+        return sums.reshape(one_more, -1)[:-1, :-1]
 
 
 @lru_cache(maxsize=1)
