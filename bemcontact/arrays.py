@@ -220,6 +220,27 @@ def _halves(numbers: Array) -> tuple[Array, Array]:
     return upper, numbers - upper
 
 
+def short_svd(matrix: Array) -> tuple[Array, Array]:
+    """Singular values (k,), zeros included, and right singular vectors (k, k) of a matrix (n, k)."""
+    n, k = matrix.shape
+    if k == 0:
+        return np.zeros(0), np.zeros((0, 0))
+    if k == 1:
+        return np.sqrt((matrix * matrix).sum(axis=0)), np.ones((1, 1))
+    if n < k:
+        matrix = np.concatenate([matrix, np.zeros((k - n, k))])
+    return np.linalg.svd(matrix, full_matrices=False)[1:]
+
+
+def least_squares(columns: Array, right: Array) -> Array:
+    """The shortest x (k,) with the least |A x - b|, for columns A (n, k) and b (n,); one row or column needs no SVD."""
+    if 1 not in columns.shape:
+        return np.asarray(np.linalg.lstsq(columns, right)[0], float)
+    along = columns.ravel()
+    square = float(along @ along)
+    return (right @ columns if columns.shape[1] == 1 else right[0] * along) / (square or 1.0)
+
+
 def nonnegative_residual(columns: Array, right: Array) -> Array:
     """The residual A x - b (k,) of the x >= 0 (n,) with the least |A x - b|, for columns A (k, n) and b (k,).
 

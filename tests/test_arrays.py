@@ -1,10 +1,10 @@
-"""The residual of nonnegative least squares, judged by its optimality conditions."""
+"""The residual of nonnegative least squares by its optimality conditions; least squares and singular values."""
 
 import numpy as np
 import pytest
 import scipy
 
-from bemcontact.arrays import nonnegative_residual
+from bemcontact.arrays import least_squares, nonnegative_residual, short_svd
 
 
 def of_whole_numbers(rng, k, n):
@@ -62,3 +62,24 @@ def test_ties_are_no_descent():
     columns = np.array([[0, -1, 0, -1, 0], [-1, -1, -1, 1, -1], [-1, 0, 1, 1, -1], [1, -1, 0, 0, 1]], float)
     residual = nonnegative_residual(columns, np.array([1.0, 0, 1, 1]))
     np.testing.assert_allclose(residual, [-1, -0.5, -0.5, -1], rtol=1e-15)
+
+
+def test_singular_values_are_those_of_the_matrix_with_rows_of_zeros():
+    """Few rows, and one column, have the values and null vectors of any other matrix: rows of zeros change neither."""
+    generator = np.random.default_rng(3)
+    for n, k in ((0, 1), (0, 3), (1, 1), (5, 1), (2, 3), (7, 3)):
+        matrix = generator.standard_normal((n, k))
+        values, vectors = short_svd(matrix)
+        assert values == pytest.approx(np.linalg.svd(np.vstack([matrix, np.zeros((k, k))]))[1], abs=1e-15)
+        assert np.linalg.norm(matrix @ vectors.T, axis=0) == pytest.approx(values, abs=1e-14)
+        assert vectors @ vectors.T == pytest.approx(np.eye(k), abs=1e-14)
+
+
+def test_least_squares_are_the_shortest_ones():
+    """They are A⁺b by the pseudo-inverse of Moore and Penrose, also of one row or column, of zeros, and of rank one."""
+    generator = np.random.default_rng(4)
+    for n, k in ((0, 1), (1, 1), (5, 1), (1, 4), (6, 3), (3, 6)):
+        columns, right = generator.standard_normal((n, k)), generator.standard_normal(n)
+        alike = np.outer(columns.sum(axis=1), np.ones(k))
+        for matrix in (columns, alike, 0 * columns):
+            np.testing.assert_allclose(least_squares(matrix, right), np.linalg.pinv(matrix) @ right, rtol=0, atol=1e-13)

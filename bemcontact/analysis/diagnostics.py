@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from bemcontact.adaptivity.zone_runs import SAME
 from bemcontact.analysis.spline_bulges import bulging
+from bemcontact.arrays import short_svd
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.bem.body import Body
 from bemcontact.bem.mesh import CORNER
@@ -131,12 +132,15 @@ def hardly_held(
     motions = body.seen.coefficients  # (k, 3 + 3 t): x, y and turn of the body, then of tools
     if not touching.any() or not (ways := unseen_ways(motions[:, 2:].T, LEVEL)).size:
         return
-    moved, sizes = np.linalg.qr(motions.T @ ways)  # pure translations of the body
-    changes = np.linalg.solve(sizes.T, (contact.rigid_motions[touching] @ ways).T).T
-    least = np.linalg.svd(changes, full_matrices=False)[2][-1]  # the translation that changes gaps least
-    slope = float(np.abs(changes @ least).max())
+    moved, changes = motions.T @ ways, contact.rigid_motions[touching] @ ways  # pure translations of the body
+    if moved.shape[1] > 1:
+        moved, sizes = np.linalg.qr(moved)
+        changes = np.linalg.solve(sizes.T, changes.T).T.astype(float)
+        least = short_svd(changes)[1][-1:].T  # the translation that changes gaps least
+        moved, changes = moved @ least, changes @ least
+    slope = float(np.abs(changes).max() / np.linalg.norm(moved))
     if slope <= SLOPE and not (slope <= LEVEL and undetermined):
-        direction = (moved @ least)[:2]
+        direction = moved[:2, 0] / np.linalg.norm(moved)
         x, y = np.round(np.copysign(1.0, direction[np.argmax(abs(direction))]) * direction, 2) + 0.0
         yield (
             f"only slopes of the surfaces where they touch, of at most {slope:.2g}, hold the body against the "

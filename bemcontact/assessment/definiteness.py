@@ -6,7 +6,7 @@ from typing import Self
 import numpy as np
 from scipy.linalg import get_lapack_funcs, solve_triangular
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, short_svd
 
 geqrf, ormqr, syevr, syevr_lwork = get_lapack_funcs(("geqrf", "ormqr", "syevr", "syevr_lwork"), dtype=float)
 EPS = float(np.finfo(float).eps)
@@ -51,7 +51,7 @@ class Definiteness:
         K, terms, Z = (A + A.T) / 2, np.abs(A), np.eye(n)
         if k := ell.shape[1]:
             ell = ell / np.sqrt((ell * ell).sum(axis=0))
-            sizes, (reflectors, factors, *_) = np.linalg.svd(ell, compute_uv=False), geqrf(ell)
+            sizes, (reflectors, factors, *_) = short_svd(ell)[0], geqrf(ell)
             spread = float(sizes[0] / sizes[-1]) if sizes[-1] else np.inf
             Z, half = (_times_q(part, reflectors, factors)[:, k:] for part in (Z, K))
             K = _times_q(half.T, reflectors, factors)[:, k:]

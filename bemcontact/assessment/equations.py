@@ -12,7 +12,15 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from bemcontact.arrays import Array, exact_remainders, powers_of_two, product_remainders, sum_remainders
+from bemcontact.arrays import (
+    Array,
+    exact_remainders,
+    least_squares,
+    powers_of_two,
+    product_remainders,
+    short_svd,
+    sum_remainders,
+)
 from bemcontact.assessment.definiteness import EPS
 from bemcontact.contact.condensed_contact import CondensedContact
 
@@ -97,7 +105,7 @@ class ContactEquations:
         if not ell.shape[1] or not len(ell):
             return step, least
         left = self.imbalance(y)[0]
-        step[y > least] = -np.linalg.lstsq(ell.T, left, rcond=None)[0]
+        step[y > least] = -least_squares(ell.T, left)
         rest = np.linalg.norm(left + self.equilibrium.T @ step)
         if rest > KNOWN * np.linalg.norm(left) or np.linalg.norm(step) > least:
             return np.zeros(len(y)), least
@@ -139,7 +147,7 @@ def _least_change(
     if not left.any():
         return 0.0, beside, None
     own = ell[carries]
-    _, sizes, axes = np.linalg.svd(own, full_matrices=len(own) < own.shape[1])
+    sizes, axes = short_svd(own)
     if (rank := int(np.count_nonzero(sizes > lost))) == ell.shape[1]:  # rows of the pseudo-inverse are these times Uᵀ
         return float(np.linalg.norm(axes.T / sizes, axis=1) @ left), beside, None
     if rank == ell.shape[1] - 1:
@@ -194,7 +202,7 @@ def _nearest_balanced(equations: ContactEquations, p: Array, contact_set: NDArra
         imbalance = ell.T @ y + load
         touching = ell[y > 0]
         if np.abs(imbalance).max(initial=0.0) <= 1e-14 * (1.0 + np.abs(p).sum()):
-            y[y > 0] -= np.linalg.lstsq(touching.T, equations.imbalance(y)[0], rcond=None)[0]
+            y[y > 0] -= least_squares(touching.T, equations.imbalance(y)[0])
             return np.maximum(y, 0.0)
-        b -= np.linalg.lstsq(touching.T @ touching, imbalance, rcond=None)[0]
+        b -= least_squares(touching.T @ touching, imbalance)
     return None

@@ -3,7 +3,8 @@
 import math
 from collections.abc import Collection
 from dataclasses import dataclass, fields
-from typing import ClassVar, NamedTuple
+from itertools import pairwise
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,13 +12,13 @@ from pydantic import computed_field
 
 from bemcontact.arrays import Array, IntArray, magnitudes
 from bemcontact.checks.attributes import PEAK, PLACE, ByName, WithHints, Words
+from bemcontact.contact.condensed_contact import PEAK as LEAST_PEAK
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import BALANCED
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.serialization import Internal, Leaf, Pair, Record
 
 OPEN_NODES = 3
-EPS = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,7 +155,7 @@ def footprint(contact: CondensedContact, solution: ContactSolution, *, infinite:
     half-way. Contact up to the end of a run ends at its last point, or at the node beyond it that a condition holds on
     the rigid surface. There is no peak if that of a zone is known to be infinite.
     """
-    carried = _LoadOnPoints(contact, solution.pressure, infinite)
+    carried = _LoadOnPoints.of(contact, solution.pressure, infinite)
     forces = ((x, y) for x, y in contact.resultants(solution.pressure).tolist())
     moments = contact.moments(solution.pressure).tolist()
     return Footprint(
@@ -163,8 +164,8 @@ def footprint(contact: CondensedContact, solution: ContactSolution, *, infinite:
             for zone, path in _paths(contact, solution)
             for interval in _intervals(path, contact.zone_names[zone], carried)
         ),
-        peak=None if infinite else _peak(contact, solution.pressure),
-        resultant=_resultant(contact, solution.pressure),
+        peak=None if infinite else carried.largest(np.arange(contact.size)),
+        resultant=_resultant(carried),
         forces=ByName("contact", dict(zip(contact.zone_names, forces, strict=True))),
         moments=ByName("contact", dict(zip(contact.zone_names, moments, strict=True))),
     )
@@ -198,18 +199,32 @@ def resting_ends(contact: CondensedContact, solution: ContactSolution) -> tuple[
 
 
 class _LoadOnPoints(NamedTuple):
-    """The pressure of contact points (n,), of which stretches of contact carry parts."""
+    """Pressure (n,), forces (n, 2) and their moments (n,) at contact points; stretches of contact carry parts."""
 
     contact: CondensedContact
     pressure: Array
+    forces: Array
+    moments: Array
     infinite: Collection[str]
 
+    @classmethod
+    def of(cls, contact: CondensedContact, pressure: Array, infinite: Collection[str]) -> Self:
+        """Those of a pressure; there is no peak in the zones where it is infinite."""
+        forces, (x, y) = contact.forces(pressure), contact.points.T
+        return cls(contact, pressure, forces, x * forces[:, 1] - y * forces[:, 0], infinite)
+
     def by(self, index: IntArray, zone: str) -> tuple[Pair, float, Peak | None]:
-        """Force, moment and peak of some points of a zone, each of which counts once."""
-        own = np.zeros_like(self.pressure)
-        own[index] = self.pressure[index]
-        force, moment = _sums(self.contact, self.contact.forces(own))
-        return force, moment, None if zone in self.infinite else _peak(self.contact, own)
+        """Force, moment and peak of some points of a zone."""
+        (fx, fy), moment = self.forces[index].sum(axis=0).tolist(), float(self.moments[index].sum())
+        return (fx, fy), moment, None if zone in self.infinite else self.largest(index)
+
+    def largest(self, index: IntArray) -> Peak | None:
+        """The largest pressure of some points; None if it is round-off."""
+        if not len(index):
+            return None
+        i = index[self.pressure[index].argmax()]
+        pressure, (x, y) = float(self.pressure[i]), self.contact.points[i].tolist()
+        return Peak(pressure=pressure, at=(x, y)) if pressure > LEAST_PEAK * self.contact.scales.pressure else None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -247,7 +262,8 @@ def _paths(contact: CondensedContact, solution: ContactSolution) -> list[tuple[i
 
 def _path(contact: CondensedContact, zone: int, run: int, gap: Array, touching: NDArray[np.bool_]) -> _Path:
     """Gather the points of a run."""
-    index = contact.in_order(np.flatnonzero((contact.zone == zone) & (contact.run == run)))
+    index = np.flatnonzero((contact.zone == zone) & (contact.run == run))
+    index = index[contact.arc_position[index].argsort(kind="stable")]
     perimeter, m = float(contact.run_length[run]), len(index)
     around, turns, first = index, 0.0, 0
     if np.isfinite(perimeter):
@@ -269,15 +285,17 @@ def _path(contact: CondensedContact, zone: int, run: int, gap: Array, touching: 
 
 def _stretches(path: _Path) -> list[tuple[int, int]]:
     """First and last point of each unbroken stretch of contact of a run that does not touch all around."""
-    edges = np.diff(np.concatenate([[0], path.touching.astype(int), [0]]))
-    begins, ends = np.flatnonzero(edges > 0).tolist(), (np.flatnonzero(edges < 0) - 1).tolist()
-    return [(begin, finish) for begin, finish in zip(begins, ends, strict=True) if path.first <= begin < path.last]
+    touching = path.touching
+    changes = (np.flatnonzero(touching[1:] != touching[:-1]) + 1).tolist()
+    stretches = [*pairwise([0, *changes, len(touching)])][int(not touching[0]) :: 2]
+    return [(begin, after - 1) for begin, after in stretches if path.first <= begin < path.last]
 
 
 def _intervals(path: _Path, zone: str, carried: _LoadOnPoints) -> list[ContactInterval]:
     """The stretches of contact of a run; a closed run in contact all around is one, from its first point."""
     if path.closed:
-        return [_interval(path, zone, (path.arc[path.first], path.arc[path.last]), carried.by(path.index, zone))]
+        once = path.index[path.first : path.last]
+        return [_interval(path, zone, (path.arc[path.first], path.arc[path.last]), carried.by(once, zone))]
     return [
         _interval(
             path, zone, (_end(path, begin, -1), _end(path, finish, +1)),
@@ -336,11 +354,11 @@ def _end(path: _Path, last: int, step: int) -> float:
 
 
 def _line(x: Array, y: Array) -> tuple[float, float]:
-    """Slope, and value at zero, of the line of least squares through points x (k,), y (k,), as `np.polyfit` has it."""
-    columns = np.stack([x, np.ones_like(x)], axis=1)
-    scale = np.sqrt((columns * columns).sum(axis=0))
-    slope, value = (np.linalg.lstsq(columns / scale, y, rcond=len(x) * EPS)[0] / scale).tolist()
-    return slope, value
+    """Slope, and value at zero, of the line of least squares through two or more points x (k,), y (k,)."""
+    middle, level = math.fsum(x) / len(x), math.fsum(y) / len(x)
+    away = x - middle
+    slope = float(away @ (y - level) / (away @ away))
+    return slope, level - slope * middle
 
 
 def _end_rate(path: _Path, rate: Array, last: int, step: int) -> float | None:
@@ -363,33 +381,17 @@ def _at(path: _Path, position: float) -> Pair:
         x, y = path.held_points[int(np.flatnonzero(path.held_arc == position)[0])]
         return float(x), float(y)
     count = min(3, len(path.arc))
-    start = min(max(int(np.argmin(np.abs(path.arc - position))) - 1, 0), len(path.arc) - count)
+    start = min(max(int(np.abs(path.arc - position).argmin()) - 1, 0), len(path.arc) - count)
     arc, points = path.arc[start : start + count].tolist(), path.points[start : start + count]
     shape = [math.prod((position - other) / (own - other) for other in arc if other != own) for own in arc]
-    x, y = np.array(shape) @ points
-    return float(x), float(y)
+    x, y = (np.array(shape) @ points).tolist()
+    return x, y
 
 
-def _peak(contact: CondensedContact, pressure: Array) -> Peak | None:
-    """The point of largest pressure."""
-    i = int(np.argmax(pressure))
-    if not contact.peak(pressure):
-        return None
-    x, y = contact.points[i]
-    return Peak(pressure=float(pressure[i]), at=(float(x), float(y)))
-
-
-def _resultant(contact: CondensedContact, pressure: Array) -> Resultant:
+def _resultant(carried: _LoadOnPoints) -> Resultant:
     """Force Σ w p n, its moment, and its line of action."""
-    forces = contact.forces(pressure)
-    (fx, fy), moment = _sums(contact, forces)
+    (fx, fy), moment = carried.forces.sum(axis=0).tolist(), float(carried.moments.sum())
     square = fx**2 + fy**2
-    acts = square > (BALANCED * magnitudes(forces).sum()) ** 2  # else the force, and so its line, is round-off
+    acts = square > (BALANCED * magnitudes(carried.forces).sum()) ** 2  # else the force, and so its line, is round-off
     line_point = (moment * fy / square, -moment * fx / square) if acts else None
     return Resultant(force=(fx, fy), moment=moment, line_point=line_point)
-
-
-def _sums(contact: CondensedContact, forces: Array) -> tuple[Pair, float]:
-    """Sum and moment about the origin of forces (n, 2) at the contact points."""
-    fx, fy = forces.sum(axis=0).tolist()
-    return (fx, fy), float((contact.points[:, 0] * forces[:, 1] - contact.points[:, 1] * forces[:, 0]).sum())

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, least_squares
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.lu import LU
 from bemcontact.contact.solution import ContactSolution
@@ -58,7 +58,7 @@ def residuals(contact: CondensedContact, solution: ContactSolution, force_balanc
     residual = u_n - contact.free_displacement - contact.compliance @ p
     residual = residual - contact.rigid_motions @ solution.rigid_amplitudes  # what is left has all its digits
     R, root = contact.rigid_motions, np.sqrt(contact.weights)  # on purpose not `amplitudes_of`, which solvers use
-    residual = residual - R @ np.linalg.lstsq(root[:, None] * R, root * residual, rcond=None)[0]
+    residual = residual - R @ least_squares(root[:, None] * R, root * residual)
     return Residuals(
         penetration=_largest(-gap / U),
         tension=_largest(-p / T),

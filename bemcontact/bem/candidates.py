@@ -198,7 +198,7 @@ def _faces(outline: Outline, surface: AnySurface, in_zone: BoolArray, deflection
         assert deflection is not None
         return _NodeFaces.of_one(surface.behind(deflection))
     if isinstance(surface, SmoothSurface):
-        return _NodeFaces.of_one(surface.held(mesh.nodes))
+        return _NodeFaces(*outline.held_nodes(surface), np.zeros((len(mesh.nodes), 3), bool))
     if isinstance(surface, BodySurface) and surface.elastic:
         own, (inward, reach) = mesh.nodes_of(np.flatnonzero(in_zone)), outline.sides
         held = Faces(*(np.zeros((len(mesh.nodes), *shape)) for shape in ((3,), (3, 2), (3, 2))))

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array, BoolArray, short_svd
 from bemcontact.bem.bonds import BondedPoints, split_motions
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
-from bemcontact.bem.rigid_motions import RigidMotions, echelon, short_svd
+from bemcontact.bem.rigid_motions import RigidMotions, echelon
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.problems.contact_zone import ToolAction
 from bemcontact.problems.problem import Problem

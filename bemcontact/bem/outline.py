@@ -1,7 +1,7 @@
 """Places on the curves of the edges themselves, by the local coordinates of the elements on them."""
 
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -22,6 +22,8 @@ SAMPLES = np.linspace(-1.0, 1.0, 17)
 """Local coordinates at which the boundary is compared with a surface; some are moved, see `Outline.local`."""
 NODES = [0, len(SAMPLES) // 2, -1]
 """Which of them are nodes."""
+SHAPES = reference_element.values(SAMPLES)
+"""Shape functions (17, 3) there."""
 STEPS_BACK = 4
 """Steps from a fraction of an edge to the local coordinate: each has more digits, for middle nodes are nearly there."""
 KEPT = 8
@@ -64,29 +66,53 @@ class Outline:
         narrower than an element would be between them.
         """
         fractions, step = self.mesh.fractions, SAMPLES[-1] / NODES[1]
-        local, taken, moved = np.tile(SAMPLES, (len(fractions), 1)), np.zeros((len(fractions), len(SAMPLES))), False
+        local = np.empty((len(fractions), len(SAMPLES)))
+        local[:] = SAMPLES
+        narrow = [*self._narrow]
+        if not narrow:
+            return local
+        taken = np.zeros_like(local)
         taken[:, NODES] = np.inf
+        for number, found in narrow:
+            places, own = np.array(found, float), np.flatnonzero(self.mesh.edge == number)
+            elements = own[np.minimum(np.searchsorted(fractions[own, 2], places), len(own) - 1)]
+            first, _, last = fractions[elements].T
+            xi = (2 * (places - first) / (last - first) - 1)[:, None]
+            away = np.where(SAMPLES * xi > 0, np.abs(SAMPLES - xi), np.inf)
+            for i, element in enumerate(elements):
+                distance = away[i] + taken[element]
+                if distance[at := distance.argmin()] < 2 * step:
+                    local[element, at], taken[element, at] = xi[i, 0], np.inf
+        return np.sort(local, axis=1)
+
+    @property
+    def _narrow(self) -> Iterator[tuple[int, tuple[float, ...]]]:
+        """Numbers of edges, with the fractions of each where a surface may be narrow."""
         zones = [(zone.surface, self.problem.edges_of(name)) for name, zone in self.problem.zones.items()]
         for number, edge in enumerate(self.edges):
             for surface, touching in zones:
-                found = tuple(_narrow_places(edge, surface, paired=edge.name in touching))
-                if not found:
-                    continue
-                places, own, moved = np.array(found, float), np.flatnonzero(self.mesh.edge == number), True
-                elements = own[np.minimum(np.searchsorted(fractions[own, 2], places), len(own) - 1)]
-                first, _, last = fractions[elements].T
-                xi = (2 * (places - first) / (last - first) - 1)[:, None]
-                away = np.where(SAMPLES * xi > 0, np.abs(SAMPLES - xi), np.inf)
-                for i, element in enumerate(elements):
-                    distance = away[i] + taken[element]
-                    if distance[at := distance.argmin()] < 2 * step:
-                        local[element, at], taken[element, at] = xi[i, 0], np.inf
-        return np.sort(local, axis=1) if moved else local
+                if found := tuple(_narrow_places(edge, surface, paired=edge.name in touching)):
+                    yield number, found
+
+    @cached_property
+    def _moved_samples(self) -> IntArray:
+        """Elements (k,) of which a sample is not where it is in most of them."""
+        return np.flatnonzero((self.local != SAMPLES).any(axis=1))
 
     @cached_property
     def shapes(self) -> Array:
         """Shape functions (m, 17, 3) at the samples."""
-        return reference_element.values(self.local)
+        shapes, other = np.empty((*self.local.shape, 3)), self._moved_samples
+        shapes[:] = SHAPES
+        shapes[other] = reference_element.values(self.local[other])
+        return shapes
+
+    def interpolated(self, values: Array) -> Array:
+        """Values (m, 17, 2) at the samples, from those (m, 3, 2) at the nodes of elements: most by one product."""
+        other = self._moved_samples
+        result = (values.transpose(0, 2, 1).reshape(-1, 3) @ SHAPES.T).reshape(-1, 2, len(SAMPLES)).transpose(0, 2, 1)
+        result[other] = reference_element.values(self.local[other]) @ values[other]
+        return result
 
     @cached_property
     def in_zones(self) -> BoolArray:
@@ -134,10 +160,14 @@ class Outline:
     def _on_edges(self, elements: IntArray, xi: Array, values: Callable[[Edge, Array], Array]) -> Array:
         """Values (k, q, 2) of edges by fractions of their length, at local coordinates ξ (k, q) of elements (k,)."""
         number, (first, middle, last) = self.mesh.edge[elements], self.mesh.fractions[elements].T[..., None]
-        along, result = first + (last - first) * (1 + xi) / 2, np.empty((*xi.shape, 2))
+        along = first + (last - first) * (1 + xi) / 2
         along += (middle - (first + last) / 2) * (1 - xi**2)  # not zero where an element faces one of another body
         along = np.minimum(np.maximum(along, first), last)
-        for i in sorted({*number.tolist()}):
+        edges = sorted({*number.tolist()})
+        if len(edges) == 1:
+            return values(self.edges[edges[0]], along.ravel()).reshape(*xi.shape, 2)
+        result = np.empty((*xi.shape, 2))
+        for i in edges:
             on = number == i
             result[on] = values(self.edges[i], along[on].ravel()).reshape(-1, xi.shape[1], 2)
         return result
@@ -152,9 +182,9 @@ class Outline:
 
     def _at_samples(self, elements: IntArray, values: Callable[[Edge, Array], Array]) -> Array:
         """Values (k, 17, 2) of edges at the samples of elements (k,), found when they are first asked for."""
-        found, known = self._known_samples.setdefault(
-            values, (np.empty((*self.local.shape, 2)), np.zeros(len(self.local), bool))
-        )
+        if values not in self._known_samples:
+            self._known_samples[values] = np.empty((*self.local.shape, 2)), np.zeros(len(self.local), bool)
+        found, known = self._known_samples[values]
         new = elements[~known[elements]]
         if len(new):
             found[new], known[new] = self._on_edges(new, self.local[new], values), True
@@ -208,20 +238,22 @@ class Outline:
 
     def _faces(self, surface: AnyShape, elements: IntArray) -> tuple[Faces, OnEdges | None]:
         """Faces (k, 17), and the pairs of the samples on an elastic body."""
-        points, before, opposite = self.sampled(elements), 0, None
+        points, opposite = self.sampled(elements), None
         flat = points.reshape(-1, 2)
         if isinstance(surface, SmoothSurface):
-            held = surface.faces(flat)
-        else:  # nodes say where the body lies on a face
-            inward, (beside, reach) = np.repeat(self.inward(elements).reshape(-1, 1, 2), 2, axis=1), self.sides
-            before, turned, reach = len(reach), np.concatenate([beside, inward]), np.append(reach, np.zeros(len(flat)))
-            flat = np.concatenate([self.mesh.nodes, flat])
-            if isinstance(surface, BodySurface) and surface.elastic:
-                pairs = surface.pairs(flat, turned[:, 0])
-                held = surface.faces(flat, turned, reach, pairs)
-                opposite = pairs.edge[before:], pairs.fraction[before:]
-            else:
-                held = surface.faces(flat, turned, reach)
+            gap, normals = surface.held(flat)
+            normals = normals.reshape(points.shape)
+            return Faces(gap.reshape(points.shape[:-1]), normals, normals), None
+        # nodes say where the body lies on a face
+        inward, (beside, reach) = np.repeat(self.inward(elements).reshape(-1, 1, 2), 2, axis=1), self.sides
+        before, turned, reach = len(reach), np.concatenate([beside, inward]), np.append(reach, np.zeros(len(flat)))
+        flat = np.concatenate([self.mesh.nodes, flat])
+        if isinstance(surface, BodySurface) and surface.elastic:
+            pairs = surface.pairs(flat, turned[:, 0])
+            held = surface.faces(flat, turned, reach, pairs)
+            opposite = pairs.edge[before:], pairs.fraction[before:]
+        else:
+            held = surface.faces(flat, turned, reach)
         own = Faces(*(part[before:, 0].reshape(points.shape[:-1] + part.shape[2:]) for part in held))
         for part, at_nodes in zip(own, self.held_nodes(surface), strict=True):
             part[:, NODES] = at_nodes[self.mesh.elements[elements], [2, 0, 0]]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bemcontact.arrays import Array, successive
+from bemcontact.arrays import Array, short_svd, successive
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
@@ -177,15 +177,3 @@ def echelon(basis: Array) -> Array:
 def _lengths(rows: Array) -> Array:
     """Lengths (k,) of rows (k, components)."""
     return np.sqrt((rows * rows).sum(axis=1))
-
-
-def short_svd(matrix: Array) -> tuple[Array, Array]:
-    """Singular values (k,), zeros included, and right singular vectors (k, k) of a matrix (n, k)."""
-    n, k = matrix.shape
-    if k == 0:
-        return np.zeros(0), np.zeros((0, 0))
-    if k == 1:
-        return np.sqrt((matrix * matrix).sum(axis=0)), np.ones((1, 1))
-    if n < k:
-        matrix = np.concatenate([matrix, np.zeros((k - n, k))])
-    return np.linalg.svd(matrix, full_matrices=False)[1:]

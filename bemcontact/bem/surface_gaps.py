@@ -183,8 +183,9 @@ class SurfaceGaps(DisplacedSurfaces):
         paired = self.paired[zone]
         m, ends = len(paired), self._ends(zone, paired)
         depth, xi, behind, hidden = np.full(m, -np.inf), np.zeros(m), np.zeros(m, bool), [-np.inf] * len(ends)
-        others = self.near(zone, np.flatnonzero(~paired & self._may_meet(zone)))
-        for elements, own in ((np.flatnonzero(paired), True), (others, False)):
+        of_zone, others = np.flatnonzero(paired), self.near(zone, np.flatnonzero(~paired & self._may_meet(zone)))
+        self.outline.sampled(np.concatenate([of_zone, others]))  # all at once
+        for elements, own in ((of_zone, True), (others, False)):
             if not len(elements):
                 continue
             local = self.outline.local[elements]
@@ -196,7 +197,8 @@ class SurfaceGaps(DisplacedSurfaces):
                     depths[self._beside_corner(zone, elements)] = -np.inf
             deepest = depths.argmax(axis=1)
             depth[elements], xi[elements] = (part[np.arange(len(elements)), deepest] for part in (depths, local))
-        excused = ~paired & (depth <= self.second_order(zone))
+        excused = ~paired & (depth > 0)
+        excused = excused & (depth <= self.second_order(zone)) if excused.any() else excused
         return Intrusion(
             depth=np.where(excused, -np.inf, depth), xi=xi, behind=behind, excused=np.where(excused, depth, -np.inf),
             ends=tuple(zip(ends, hidden, strict=True)),
@@ -209,10 +211,11 @@ class SurfaceGaps(DisplacedSurfaces):
         # where no node touches, what dips was not seen, and is no contact
         touching = nodes.min(axis=2) <= TOUCHES * nodes.max(axis=2)
         shapes = self.outline.shapes[elements]
-        dip = np.maximum(-np.sum(shapes * np.where(self._same(zone, here), nodes, 0.0), axis=2), 0.0) * touching
-        depth, other = -here.gap - dip, scalar_products(here.faces, there.normals) < SAME_FACE
-        beyond = other & (-there.gap > self.second_order(zone))
-        if beyond.any():
+        if isinstance(self.surfaces[zone], Polyline):
+            shapes = shapes * (np.einsum("kqi,kni->kqn", here.faces, here.faces[:, NODES]) > SAME_FACE)
+        dip = np.maximum(-(shapes @ nodes.transpose(0, 2, 1))[..., 0], 0.0) * touching
+        depth, beyond = -here.gap - dip, scalar_products(here.faces, there.normals) < SAME_FACE
+        if beyond.any() and (beyond := beyond & (-there.gap > self.second_order(zone))).any():
             beyond &= ~(self._beside_corner(zone, elements) | self._beside_own_corner(zone, elements))
             depth = np.maximum(depth, np.where(beyond, -there.gap, -np.inf))
         return depth
@@ -255,12 +258,6 @@ class SurfaceGaps(DisplacedSurfaces):
         if not isinstance(surface, BodySurface):
             return np.zeros(moved.shape, bool)
         return (moved <= LITTLE * self.size) & surface.beside_groove(places, moved)
-
-    def _same(self, zone: str, here: Faces) -> BoolArray:
-        """Whether the face of each place (k, q, 3) is that of each node of its element; a smooth surface has one."""
-        if not isinstance(self.surfaces[zone], Polyline):
-            return np.ones((*here.gap.shape, len(NODES)), bool)
-        return np.einsum("kqi,kni->kqn", here.faces, here.faces[:, NODES]) > SAME_FACE
 
     def _depth_in_other(
         self, zone: str, elements: IntArray, ends: Sequence[FaceEnd]
@@ -459,7 +456,7 @@ class SurfaceGaps(DisplacedSurfaces):
     @cached_property
     def _displacement(self) -> Array:
         """Displacement (m, q, 2) [L] at the samples of all elements."""
-        return self.outline.shapes @ self.state.displacement
+        return self.outline.interpolated(self.state.displacement)
 
     @cached_property
     def largest(self) -> float:
@@ -489,9 +486,10 @@ class SurfaceGaps(DisplacedSurfaces):
         Where both sides are on one body, the edges of the first side alone. Elements that are bonded to the second body
         move with it, and those that face this surface in another contact of both bodies are compared there.
         """
-        mesh, surface, edges = self.outline.mesh, self.surfaces[zone], self.problem.edges_of(zone)
+        mesh, surface = self.outline.mesh, self.surfaces[zone]
         if not isinstance(surface, BodySurface):
             return np.ones(len(mesh.elements), bool)
+        edges = self.problem.edges_of(zone)
         first = self.problem.part_of(edges[0])
         if first == surface.body:
             return np.isin(mesh.edge_names, edges)[mesh.edge]
@@ -524,11 +522,11 @@ class SurfaceGaps(DisplacedSurfaces):
 
         Both as drawn and after the motion. The gap changes by no more than places move beside the surface.
         """
+        if not len(elements):
+            return elements
         drawn, surface = self.state.points[elements], self.surfaces[zone]
         moved = drawn + self.state.displacement[elements]
         length, after = (magnitudes(places[:, 1:] - places[:, :-1]).sum(axis=1) for places in (drawn, moved))
-        if not len(elements):
-            return elements
         gap = self.undeformed(zone, drawn[:, 1]).gap
         near = gap <= length
         if isinstance(surface, BodySurface):

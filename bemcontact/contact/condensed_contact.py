@@ -241,8 +241,11 @@ class CondensedContact(WithHints, MotionAlgebra):
     @property
     def _acting(self) -> tuple[Array, Array]:
         """Factors (1 + c,) of what is permanent and of the cases, and the terms (3 t, 1 + c) of the forces on tools."""
+        factors = np.append(1.0, self.cases.factors)
+        if not len(self.tools):
+            return factors, np.zeros((0, len(factors)))
         of_cases = self.cases.force * self.cases.factors
-        return np.append(1.0, self.cases.factors), np.column_stack([_sum(self.tools.force, -of_cases), of_cases])
+        return factors, np.column_stack([_sum(self.tools.force, -of_cases), of_cases])
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:
         """Apply load cases, each by its factor, and no other ones; nothing is condensed anew.
@@ -445,8 +448,8 @@ class CondensedContact(WithHints, MotionAlgebra):
     def pressed(self, pressure: Array, displacement: Array) -> BoolArray:
         """Which points (n,) are in contact under pressure that is no round-off beside the peak, nor that beside T."""
         p = self._by_point(pressure, "pressure")
-        peak = self.peak(p)
-        return self.touching(p, displacement) & (p > PRESSED * peak) & (peak > 0)
+        touching, peak = self.touching(p, displacement), self.peak(p)
+        return touching & (p > PRESSED * peak) if peak else np.zeros_like(touching)
 
     def peak(self, pressure: Array) -> float:
         """Largest of the pressures p (n,), [p]; zero if it is round-off beside T."""

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from bemcontact.arrays import Array, BoolArray, nonnegative_residual, real_array
+from bemcontact.arrays import Array, BoolArray, least_squares, nonnegative_residual, real_array, short_svd
 from bemcontact.errors import ProblemError, SingularSystemError
 
 INTERFERENCE = 1e-6
@@ -62,7 +62,7 @@ def _ensure_computable(what: str, size: float) -> None:
 def _larger(displacement: float, offset: Array, terms: Array, rigid_motions: Array) -> float:
     """The larger of a displacement [L] and the interference, without a program where a motion shows which it is."""
     if rigid_motions.shape[1] > 1 and displacement > 0:
-        fitted = offset - rigid_motions @ np.linalg.lstsq(rigid_motions, offset)[0]
+        fitted = offset - rigid_motions @ least_squares(rigid_motions, offset)
         if min(-offset.min(initial=0.0), -fitted.min(initial=0.0)) <= displacement:
             return displacement
     return max(displacement, _interference(offset, terms, rigid_motions))
@@ -101,7 +101,7 @@ def angle_of_round_off(points: Array, normals: Array, pressed: BoolArray) -> flo
     """
     at, n = points[pressed] - points[pressed].mean(axis=0), normals[pressed]
     levers = at[:, 0] * n[:, 1] - at[:, 1] * n[:, 0]
-    lever = float(np.abs(levers - n @ np.linalg.lstsq(n, levers)[0]).max())
+    lever = float(np.abs(levers - n @ least_squares(n, levers)).max())
     return COORDINATES * float(np.abs(points).max()) / lever if lever > UNSEEN * float(np.abs(at).max()) else 0.0
 
 
@@ -110,11 +110,8 @@ def unseen_ways(changes: Array, part: float) -> Array:
 
     Singular values up to a part of the largest one are zeros.
     """
-    k = changes.shape[1]
-    if not k or (k == 1 and changes.any()):  # one motion has no smaller singular value than the largest
-        return np.zeros((k, 0))
-    values, vectors = np.linalg.svd(np.vstack([changes, np.zeros((k, k))]), full_matrices=False)[1:]
-    return vectors[values <= part * values[0]].T
+    values, vectors = short_svd(changes)
+    return vectors[values <= part * values[:1]].T
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

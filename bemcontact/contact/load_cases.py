@@ -190,8 +190,11 @@ class Pinned:
 
         Terms that cancel count in full: the round-off that they leave is small beside this sum.
         """
+        of_loads = float(self.magnitude @ abs(factors))
+        if not forces.size:
+            return of_loads
         x, y, moment = forces.T.reshape(-1, 3).T
-        return float(self.magnitude @ abs(factors) + (np.hypot(x, y) + abs(moment) / self.length).sum())
+        return of_loads + float((np.hypot(x, y) + abs(moment) / self.length).sum())
 
     def violation(self, factors: Array, forces: Array, units: Mapping[str, str] | None = None) -> str | None:
         """Describe a motion that the loads drive and nothing resists; None if the loads balance, as of `total`.

@@ -30,6 +30,8 @@ class Way(NamedTuple):
 
     def back(self, points: Array) -> Array:
         """Places (..., 2) as drawn that come to points (..., 2) [L]."""
+        if self == AS_DRAWN:
+            return points
         drawn = points - self.step
         return drawn if self.turn == 0 else self.turned(drawn - self.about, -1.0) + self.about
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bemcontact.bem.rigid_motions import FAR, RigidMotions, echelon, short_svd, toward
+from bemcontact.bem.rigid_motions import FAR, RigidMotions, echelon, toward
 
 
 def test_a_motion_is_described_without_warning():
@@ -54,14 +54,3 @@ def test_slight_components_of_motions_are_no_pivots(seed):
     np.testing.assert_allclose(np.linalg.norm(rows, axis=1), 1.0)
     assert np.linalg.svd(rows, compute_uv=False)[-1] > 0.1
     np.testing.assert_allclose(rows @ np.linalg.pinv(basis) @ basis, rows, rtol=0, atol=1e-13)
-
-
-def test_singular_values_are_those_of_the_matrix_with_rows_of_zeros():
-    """Few rows, and one column, have the values and null vectors of any other matrix: rows of zeros change neither."""
-    generator = np.random.default_rng(3)
-    for n, k in ((0, 1), (0, 3), (1, 1), (5, 1), (2, 3), (7, 3)):
-        matrix = generator.standard_normal((n, k))
-        values, vectors = short_svd(matrix)
-        assert values == pytest.approx(np.linalg.svd(np.vstack([matrix, np.zeros((k, k))]))[1], abs=1e-15)
-        assert np.linalg.norm(matrix @ vectors.T, axis=0) == pytest.approx(values, abs=1e-14)
-        assert vectors @ vectors.T == pytest.approx(np.eye(k), abs=1e-14)
