@@ -31,14 +31,14 @@ def real_array(value: Any, what: str, shape: Dimensions | None = None, *, finite
     Refused are other shapes, masked entries, truth values, texts, complex numbers, and entries that are not finite or
     too large to compute with, unless `finite` is False. The array is not copied if it is one already.
     """
-    array = _as_array(value, what)
+    array = value if type(value) is np.ndarray else _as_array(value, what)
     if array.dtype != np.float64:
         if array.dtype.kind == "O" and all(is_real(entry) for entry in array.flat):
             array = _as_floats(array, what)
         if array.dtype.kind not in "iuf" and array.size:
             raise ProblemError(f"{what} must contain real numbers; found {_described(value, array)}")
+        array = np.asarray(array, dtype=float)
     _ensure_shape(array, what, shape)
-    array = np.asarray(array, dtype=float)
     if finite and not _is_moderate(array):
         _complain(array, what)
     return array
@@ -95,6 +95,11 @@ def scalar_products(one: Array, other: Array) -> Array:
     return one[..., 0] * other[..., 0] + one[..., 1] * other[..., 1]
 
 
+def indices(mask: BoolArray) -> IntArray:
+    """Indices (k,) where a mask (n,) is true, in a fraction of the time of `np.flatnonzero`, which takes any shape."""
+    return mask.nonzero()[0]
+
+
 def successive(index: IntArray) -> IntArray | slice:
     """A slice where indices follow each other, with which NumPy adds several times faster."""
     if len(index) and (index[1:] - index[:-1] == 1).all():
@@ -135,8 +140,8 @@ def _ensure_shape(array: NDArray[Any], what: str, shape: Dimensions | None) -> N
     """Refuse another shape."""
     if shape is None or array.shape == shape:
         return
-    fits = array.ndim == len(shape) and all(want in (None, has) for want, has in zip(shape, array.shape, strict=True))
-    if not fits:
+    known = [has if want is None else want for want, has in zip(shape, array.shape, strict=False)]
+    if len(shape) != array.ndim or [*array.shape] != known:
         needed = ", ".join("any" if length is None else str(length) for length in shape)
         needed = f"({needed},)" if len(shape) == 1 else f"({needed})"
         raise ProblemError(f"{what} has shape {array.shape} where {needed} is needed")

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from bemcontact.adaptivity.zone_runs import SAME
 from bemcontact.analysis.spline_bulges import bulging
-from bemcontact.arrays import short_svd
+from bemcontact.arrays import indices, short_svd
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.bem.body import Body
 from bemcontact.bem.mesh import CORNER
@@ -225,7 +225,7 @@ def reached_zone_ends(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     mesh, points, in_zone = body.mesh, body.points, body.points.in_zone
     ends = np.zeros(len(mesh.nodes), bool)
     ends[: len(in_zone)] = in_zone != in_zone[mesh.before]
-    for i in np.flatnonzero(touching & ends[points.node]).tolist():
+    for i in indices(touching & ends[points.node]).tolist():
         node, other, angles = points.node[i], points.opposite.node[i], mesh.inner_angles
         smooth = abs(angles[node] - np.pi) < CORNER
         if not smooth and (
@@ -272,7 +272,7 @@ def longer(problem: Problem, zone: str) -> str:
 def long_neighbors(body: Body, touching: NDArray[np.bool_]) -> Iterator[str]:
     """Note where contact reaches the end of a zone and the elements beyond it are much longer."""
     mesh, points, in_zone = body.mesh, body.points, body.points.in_zone
-    ends = np.flatnonzero(touching & (points.node < len(mesh.elements)))
+    ends = indices(touching & (points.node < len(mesh.elements)))
     after, before = points.node[ends], mesh.before[points.node[ends]]
     for i in ends[~(in_zone[after] & in_zone[before])].tolist():
         after, before, lengths = points.node[i], mesh.before[points.node[i]], mesh.lengths

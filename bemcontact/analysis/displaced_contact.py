@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes, scalar_products
+from bemcontact.arrays import Array, BoolArray, IntArray, indices, magnitudes, scalar_products
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import ALIKE, SMOOTH, ContactPoints
 from bemcontact.bem.free_motions import steps_of_surfaces
@@ -92,7 +92,7 @@ def _carried_along(
     not that of the place where it comes to, which may be beside all pressure. It only goes up or down the slope that
     the body has under an unbroken contact as a whole.
     """
-    own = np.flatnonzero(contact.zone == contact.zone_names.index(zone))
+    own = indices(contact.zone == contact.zone_names.index(zone))
     surface, force = gaps.surfaces[zone], (contact.weights * pressure)[own]
     assert isinstance(surface, BodySurface)
     at, pairs = contact.points[own], points.mesh.nodes[points.opposite.node[own]]
@@ -108,9 +108,9 @@ def _carried_along(
 def _around_contacts(run: IntArray, pressed: BoolArray) -> Iterator[IntArray]:
     """Points of each unbroken contact, with the open ones that are nearer to it in their run than to another one."""
     for number in np.unique(run[pressed]).tolist():
-        at = np.flatnonzero(run == number)
-        inside = np.flatnonzero(pressed[at])
-        starts = np.flatnonzero(np.diff(inside) > 1)
+        at = indices(run == number)
+        inside = indices(pressed[at])
+        starts = indices(np.diff(inside) > 1)
         yield from np.split(at, (inside[starts] + inside[starts + 1] + 1) // 2)
 
 
@@ -144,7 +144,7 @@ def _see_from_other_side(
     first body are compared with that body. Both is the same if the sides are exchanged.
     """
     mesh, other = points.mesh, points.opposite.node
-    at = np.flatnonzero(own & (other >= 0))
+    at = indices(own & (other >= 0))
     there = gaps.from_other_side(zone, mesh.nodes[other[at]] + _at_nodes(gaps, points)[other[at]])
     change = there.gap - linear[at]
     facing = np.sum(there.normals * points.faces[at], axis=1) >= SAME_FACE * np.hypot(*there.normals.T)
@@ -190,6 +190,8 @@ def load_after(
     """
     motions = body.free
     load = _load_of_turns(gaps, body, contact, solution, moved)
+    if not len(motions):
+        return load
     pressed = contact.lengths_by_zone @ (solution.pressure > 0)
     enough = least * pressed[pressed > 0].min() * (contact.weights @ solution.pressure)
     for number, part in enumerate(body.mesh.parts):
@@ -218,7 +220,7 @@ def turn_of_body(gaps: SurfaceGaps, part: MeshPart | None = None) -> float:
     """Turn [rad] nearest to the displacement of the boundary, or of that of one body."""
     mesh, own = (gaps.outline.mesh, slice(None)) if part is None else part[:2]
     length, x, u = mesh.tributary, gaps.state.points[own] - mesh.centroid, gaps.state.displacement[own]
-    return float(np.sum(length * (x[..., 0] * u[..., 1] - x[..., 1] * u[..., 0])) / np.sum(length[..., None] * x**2))
+    return float((length * cross(x, u)).sum() / (length * scalar_products(x, x)).sum())
 
 
 def _gain_of_levers(gaps: SurfaceGaps, body: Body, part: MeshPart, center: Array) -> tuple[Array, float]:
@@ -228,16 +230,17 @@ def _gain_of_levers(gaps: SurfaceGaps, body: Body, part: MeshPart, center: Array
     keeps its moment, and its resultant has another direction. A weight acts on the centroid.
     """
     mesh, own, angle = part.mesh, part.elements, turn_of_body(gaps, part)
-    length, r, dead = mesh.tributary[..., None], gaps.state.points[own] - center, gaps.state.traction[own]
+    length, r = mesh.tributary, gaps.state.points[own] - center
+    dead = float((length * scalar_products(gaps.state.traction[own], r)).sum())
     following = {edge for edge, held in _conditions(gaps) if held.pressure is not None}
     with_face = np.array([name in following for name in mesh.edge_names])[mesh.edge]
     if not with_face.any():
-        return np.zeros(2), -angle * float(np.sum(length * dead * r))
-    prescribed = body.acting.values.traction[own]
-    normal = np.sum(prescribed * mesh.normals, axis=-1, keepdims=True) * mesh.normals
-    pressure = np.where(with_face[:, None, None], normal, 0.0)
-    x, y = np.sum(length * pressure, axis=(0, 1))
-    return angle * np.array([-y, x]), -angle * float(np.sum(length * (dead - pressure) * r))
+        return np.zeros(2), -angle * dead
+    normals = mesh.normals[with_face]
+    pressure = length[with_face] * scalar_products(body.acting.values.traction[own][with_face], normals)
+    forces = pressure[..., None] * normals
+    x, y = forces.sum(axis=(0, 1)).tolist()
+    return angle * np.array([-y, x]), angle * (float(scalar_products(forces, r[with_face]).sum()) - dead)
 
 
 def _conditions(gaps: SurfaceGaps) -> Iterator[tuple[str, Condition]]:
@@ -250,8 +253,8 @@ def _conditions(gaps: SurfaceGaps) -> Iterator[tuple[str, Condition]]:
 def _centroid(mesh: Mesh) -> Array:
     """Centroid (2,) of the area [L]."""
     x = mesh.nodes[mesh.elements] - mesh.centroid
-    flux = mesh.tributary[..., None] * np.sum(x * mesh.normals, axis=-1, keepdims=True)
-    return mesh.centroid + 2 / 3 * np.sum(flux * x, axis=(0, 1)) / flux.sum()
+    flux = (mesh.tributary * scalar_products(x, mesh.normals)).ravel()
+    return mesh.centroid + 2 / 3 * (flux @ x.reshape(-1, 2)) / flux.sum()
 
 
 def _load_of_turns(

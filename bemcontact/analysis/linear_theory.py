@@ -8,7 +8,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from bemcontact.analysis.diagnostics import points_in
-from bemcontact.arrays import Array, IntArray, magnitudes
+from bemcontact.arrays import Array, IntArray, indices, magnitudes
 from bemcontact.assessment.footprint import Footprint
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
@@ -118,7 +118,7 @@ def contact_strains(body: Body, boundary: BoundaryState, pressure: Array) -> tup
     """
     points, other = body.points, body.points.opposite.node
     strain, part = _strains_at(body, boundary, pressure, points.node)
-    facing = np.flatnonzero(other >= 0)
+    facing = indices(other >= 0)
     if len(facing):
         both = zip((strain, part), _strains_at(body, boundary, pressure[facing], other[facing]), strict=True)
         for own, its in both:
@@ -138,7 +138,7 @@ def _strains_at(body: Body, boundary: BoundaryState, pressure: Array, nodes: Int
     for number, on_mesh in enumerate(mesh.parts):
         new = np.full(len(mesh.nodes), -1)
         new[on_mesh.nodes] = np.arange(len(on_mesh.mesh.nodes))
-        own = np.flatnonzero(new[nodes] >= 0)
+        own = indices(new[nodes] >= 0)
         material = body.problem.parts[number].material
         values = boundary.points[on_mesh.elements], boundary.displacement[on_mesh.elements]
         traction = boundary.traction[on_mesh.elements]
@@ -170,6 +170,8 @@ def _strained(
     body: Body, contact: CondensedContact, solution: ContactSolution, where: Footprint, strain: Array, part: Array
 ) -> Penetration | None:
     """Find the contact with the largest strains of those that are large on more than a small part of it."""
+    if part.max(initial=0.0) <= 1:
+        return None
     pressed = contact.pressed(solution.pressure, solution.displacement)
     found = list[tuple[float, int, float]]()
     for interval in where.intervals:
@@ -183,7 +185,7 @@ def _strained(
     _, i, share = max(found)
     E = _softest(body, i)
     (x, y), zone = body.mesh.place(contact.points[i]), contact.zone_names[contact.zone[i]]
-    element = body.points.element[np.flatnonzero(body.points.point == i)[0]]
+    element = body.points.element[indices(body.points.point == i)[0]]
     return Penetration(
         kind=Misfit.NOT_SMALL, depth=float(strain[i]), allowed=LARGE, at=(x, y),
         edge=body.mesh.edge_names[body.mesh.edge[element]], zone=zone, paired=True,

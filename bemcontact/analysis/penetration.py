@@ -6,7 +6,7 @@ in no zone of it.
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from bemcontact.analysis.moved_contact import judged_to
 from bemcontact.analysis.path_states import FollowedPath
 from bemcontact.analysis.placement import placement
 from bemcontact.analysis.second_order import second_order
-from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
+from bemcontact.arrays import Array, BoolArray, IntArray, indices, magnitudes
 from bemcontact.assessment.footprint import Footprint, footprint
 from bemcontact.assessment.penetration import ROUND_OFF, Misfit, Penetration, penetration_in_words, tolerated
 from bemcontact.bem.body import Body
@@ -77,7 +77,7 @@ def penetration(
         found, paired = gaps.intrusion(zone), gaps.paired[zone]
         depth = float(found.depth.max())
         if depth > max(allowed, worst.depth if worst else 0.0):
-            deepest = np.flatnonzero(found.depth >= (1 - ROUND_OFF) * depth)
+            deepest = indices(found.depth >= (1 - ROUND_OFF) * depth)
             element = int(deepest[np.argmin(paired[deepest])])  # of equal depths that which is easier to understand
             worst = _penetration(gaps, zone, element, found.xi[element], depth, allowed)
         other = None if worst else deepest_inside(gaps, zone)
@@ -99,16 +99,21 @@ def _through_itself(gaps: SurfaceGaps, body: Body) -> Penetration | None:
     """
     state, mesh = gaps.state, gaps.outline.mesh
     every, after = np.arange(len(mesh.elements)), mesh.elements[:, 2]
-    loops = np.split(every, np.flatnonzero(after[:-1] != every[1:]) + 1)
+    ends = (indices(after[:-1] != every[1:]) + 1).tolist()
+    loops = [every[first:last] for first, last in pairwise([0, *ends, len(every)])]
     bodies = [gaps.problem.part_of(mesh.edge_names[mesh.edge[elements[0]]]) for elements in loops]
     problem = gaps.problem
     stated = {frozenset(problem.sides_of(name)) for name in (*problem.contacts, *problem.bonded)}
     stated |= _bonded_at_a_place(body)
     drawn, chords = (
-        [values[elements][:, :2].reshape(-1, 2) for elements in loops]
-        for values in (state.points, state.points + state.displacement)
+        [values[elements].reshape(-1, 2) for elements in loops]
+        for values in (state.points[:, :2], state.points[:, :2] + state.displacement[:, :2])
     )
-    inverted = [signed_area(one) * signed_area(other) < 0 for one, other in zip(drawn, chords, strict=True)]
+    outer = [i == 0 or bodies[i] != bodies[i - 1] for i in range(len(loops))]  # a hole runs clockwise
+    inverted = [
+        (signed_area(other) > 0) is not runs and signed_area(one) * signed_area(other) < 0
+        for one, other, runs in zip(drawn, chords, outer, strict=True)
+    ]
     if not any(inverted) and _crossing(chords, bodies, stated, gaps) is None:
         return _swallowed(gaps, loops, drawn, chords, bodies, stated)
     places = [gaps.moved(elements) for elements in loops]
@@ -167,7 +172,7 @@ def _bonded_at_a_place(body: Body) -> set[frozenset[str]]:
     of_node = np.zeros(len(tied), int)
     for number, part in enumerate(body.mesh.parts):
         of_node[part.nodes] = number
-    places = np.flatnonzero(np.bincount(tied) > 2)
+    places = indices(np.bincount(tied) > 2)
     names = ([parts[number].name for number in of_node[tied == place].tolist()] for place in places)
     return {frozenset(pair) for meeting in names for pair in combinations(meeting, 2)}
 

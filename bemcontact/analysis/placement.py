@@ -22,7 +22,7 @@ from bemcontact.analysis.moved_contact import (
     judged_to,
 )
 from bemcontact.analysis.second_solution import NO_CHANGE, SecondSolution
-from bemcontact.arrays import Array, IntArray
+from bemcontact.arrays import Array, IntArray, indices
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
 from bemcontact.bem.surface_gaps import SurfaceGaps
@@ -136,8 +136,8 @@ def _slipped(first: MovedContact) -> tuple[IntArray, IntArray]:
     """
     moved, mesh = first.moved, first.points.mesh
     allowed, off, beside = first.allowed, list[int](), list[int]()
-    for i in np.flatnonzero(first.pressed & moved.other & (moved.change > 0)).tolist():
-        around = np.flatnonzero(np.any(mesh.elements == first.points.node[i], axis=1))
+    for i in indices(first.pressed & moved.other & (moved.change > 0)).tolist():
+        around = indices(np.any(mesh.elements == first.points.node[i], axis=1))
         gone = moved.distance[i] > allowed
         past = moved.distance[i] > WITHHELD * first.pressed_length(i)
         gone = gone and (past or first.gaps.distance(first.zone(i), around).min() > allowed)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import computed_field
 
-from bemcontact.arrays import Array, IntArray, magnitudes
+from bemcontact.arrays import Array, IntArray, indices, magnitudes
 from bemcontact.checks.attributes import PEAK, PLACE, ByName, WithHints, Words
 from bemcontact.contact.condensed_contact import PEAK as LEAST_PEAK
 from bemcontact.contact.condensed_contact import CondensedContact
@@ -262,7 +262,7 @@ def _paths(contact: CondensedContact, solution: ContactSolution) -> list[tuple[i
 
 def _path(contact: CondensedContact, zone: int, run: int, gap: Array, touching: NDArray[np.bool_]) -> _Path:
     """Gather the points of a run."""
-    index = np.flatnonzero((contact.zone == zone) & (contact.run == run))
+    index = indices((contact.zone == zone) & (contact.run == run))
     index = index[contact.arc_position[index].argsort(kind="stable")]
     perimeter, m = float(contact.run_length[run]), len(index)
     around, turns, first = index, 0.0, 0
@@ -286,7 +286,7 @@ def _path(contact: CondensedContact, zone: int, run: int, gap: Array, touching: 
 def _stretches(path: _Path) -> list[tuple[int, int]]:
     """First and last point of each unbroken stretch of contact of a run that does not touch all around."""
     touching = path.touching
-    changes = (np.flatnonzero(touching[1:] != touching[:-1]) + 1).tolist()
+    changes = (indices(touching[1:] != touching[:-1]) + 1).tolist()
     stretches = [*pairwise([0, *changes, len(touching)])][int(not touching[0]) :: 2]
     return [(begin, after - 1) for begin, after in stretches if path.first <= begin < path.last]
 
@@ -377,14 +377,20 @@ def _end_rate(path: _Path, rate: Array, last: int, step: int) -> float | None:
 
 def _at(path: _Path, position: float) -> Pair:
     """The point at an arc position: a held end, or by the parabola through the three nearest points in order."""
-    if position in path.held_arc:
-        x, y = path.held_points[int(np.flatnonzero(path.held_arc == position)[0])]
-        return float(x), float(y)
+    position = float(position)
+    if position in (held := path.held_arc.tolist()):
+        x, y = path.held_points[held.index(position)].tolist()
+        return x, y
     count = min(3, len(path.arc))
     start = min(max(int(np.abs(path.arc - position).argmin()) - 1, 0), len(path.arc) - count)
     arc, points = path.arc[start : start + count].tolist(), path.points[start : start + count]
-    shape = [math.prod((position - other) / (own - other) for other in arc if other != own) for own in arc]
-    x, y = (np.array(shape) @ points).tolist()
+    x = y = 0.0
+    for own, (own_x, own_y) in zip(arc, points.tolist(), strict=True):
+        share = 1.0
+        for other in arc:
+            if other != own:
+                share *= (position - other) / (own - other)
+        x, y = x + share * own_x, y + share * own_y
     return x, y
 
 

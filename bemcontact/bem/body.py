@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, indices
 from bemcontact.bem.bonds import BondedPoints
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.free_motions import UNSEEN, FreeMotions, PlacedTools, steps_of_surfaces
@@ -101,6 +101,8 @@ class Body:
     @cached_property
     def free(self) -> FreeMotions:
         """All free motions of body and tools: those seen, then those unseen."""
+        if not len(self.unseen):
+            return self.seen
         return replace(self.seen, coefficients=np.vstack([self.seen.coefficients, self.unseen.coefficients]))
 
     @cached_property
@@ -227,7 +229,7 @@ class Body:
         points = self.points
         free = np.where(self.loadings[0].values.displacement_given[points.node], 0.0, points.normals)
         part = np.hypot(*free.T)
-        for i in np.flatnonzero((part < WEDGE) & (points.opposite.node < 0)).tolist():
+        for i in indices((part < WEDGE) & (points.opposite.node < 0)).tolist():
             x, y = self.mesh.nodes[points.node[i]].tolist()
             zone = [*self.problem.zones][points.zone[i]]
             yield (

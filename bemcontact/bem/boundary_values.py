@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, indices
 from bemcontact.bem.mesh import Mesh, MeshPart
 from bemcontact.checks.attributes import PLACE, WithHints, Words
 from bemcontact.errors import Issue, ProblemError
@@ -50,6 +50,8 @@ class BoundaryValues:
 
     def spring_traction(self, displacement: Array) -> Array:
         """Traction (m, 3, 2) [p] by springs at displacements (m, 3, 2) [L] of the nodes of elements."""
+        if not self.stiffness.any():
+            return np.zeros_like(displacement)
         return -np.einsum("mkij,mkj->mki", self.stiffness, displacement)
 
 
@@ -98,7 +100,7 @@ def boundary_values(problem: Problem, conditions: Mapping[str, Condition], mesh:
     for index, name in enumerate(mesh.edge_names):
         if name not in conditions:
             continue
-        condition, elements = conditions[name], np.flatnonzero(mesh.edge == index)
+        condition, elements = conditions[name], indices(mesh.edge == index)
         for axis, field in _given(condition.displacement):
             nodes = mesh.nodes_of(elements)
             value = field.at(mesh.nodes[nodes])
@@ -179,7 +181,7 @@ def _largest_displacement(conditions: Mapping[str, Condition], mesh: Mesh) -> fl
     """Largest prescribed displacement on the mesh [L]."""
     largest = 0.0
     for name, condition in conditions.items():
-        nodes = mesh.nodes_of(np.flatnonzero(mesh.edge == mesh.edge_names.index(name)))
+        nodes = mesh.nodes_of(indices(mesh.edge == mesh.edge_names.index(name)))
         for _, field in _given(condition.displacement):
             largest = max(largest, float(abs(field.at(mesh.nodes[nodes])).max()))
     return largest

@@ -6,7 +6,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray, ObjectArray, magnitudes
+from bemcontact.arrays import Array, BoolArray, IntArray, ObjectArray, indices, magnitudes
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ALIKE, SMOOTH, ContactPoints, HeldNodes
 from bemcontact.bem.mesh import Mesh, runs
@@ -65,7 +65,7 @@ def contact_points(
             goes_on = _goes_on(mesh, values, elements, normals, on_surface) if fixed else (False, False)
             at_bond = bonded[ENDS] & (not closed)
             held = np.where(on_surface & (bonded[ENDS] | (stuck[ENDS] & fixed)), arc[ENDS], np.nan)
-            at, fast = np.flatnonzero(free), np.flatnonzero(stuck)
+            at, fast = indices(free), indices(stuck)
             pieces.append(
                 _Piece(
                     number, tool_of.get(name), elements, elements, length, goes_on, at_bond, nodes[at], arc[at],
@@ -86,7 +86,7 @@ def _in_several(mesh: Mesh, in_zones: BoolArray) -> BoolArray:
     """Whether each node (N,) is one of elements of several zones, (zones, m)."""
     count = np.zeros(len(mesh.nodes), int)
     for in_zone in in_zones if len(in_zones) > 1 else ():
-        count[mesh.nodes_of(np.flatnonzero(in_zone))] += 1
+        count[mesh.nodes_of(indices(in_zone))] += 1
     return count > 1
 
 
@@ -129,7 +129,7 @@ def _across(mesh: Mesh, facing: IntArray | None) -> IntArray:
     """Node of the other body opposite to each node (2, N), on the element before it and on the one after; else -1."""
     across = np.full((2, len(mesh.nodes)), -1)
     if facing is not None:
-        own = np.flatnonzero(facing >= 0)
+        own = indices(facing >= 0)
         start, middle, end = mesh.elements[own].T
         theirs = mesh.elements[facing[own]]
         across[1, start], across[:, middle], across[0, end] = theirs[:, 2], theirs[:, 1], theirs[:, 0]
@@ -200,7 +200,7 @@ def _faces(outline: Outline, surface: AnySurface, in_zone: BoolArray, deflection
     if isinstance(surface, SmoothSurface):
         return _NodeFaces(*outline.held_nodes(surface), np.zeros((len(mesh.nodes), 3), bool))
     if isinstance(surface, BodySurface) and surface.elastic:
-        own, (inward, reach) = mesh.nodes_of(np.flatnonzero(in_zone)), outline.sides
+        own, (inward, reach) = mesh.nodes_of(indices(in_zone)), outline.sides
         held = Faces(*(np.zeros((len(mesh.nodes), *shape)) for shape in ((3,), (3, 2), (3, 2))))
         for part, known in zip(held, surface.faces(mesh.nodes[own], inward[own], reach[own]), strict=True):
             part[own] = known
@@ -213,7 +213,7 @@ def _faces(outline: Outline, surface: AnySurface, in_zone: BoolArray, deflection
 def _between(mesh: Mesh, runs: Iterable[tuple[IntArray, bool]], divides: BoolArray) -> Iterator[tuple[IntArray, bool]]:
     """Divide runs at nodes (N,) that two faces of the surface hold, or that have two opposite nodes."""
     for elements, closed in runs:
-        corners = np.flatnonzero(divides[mesh.elements[elements, 0]])
+        corners = indices(divides[mesh.elements[elements, 0]])
         if closed and len(corners):
             elements, corners, closed = np.roll(elements, -corners[0]), corners - corners[0], False
         bounds = [0, *corners[corners > 0].tolist(), len(elements)]
@@ -227,7 +227,7 @@ def _standing(
 ) -> Iterator["_Piece"]:  # fmt: skip
     """Corners of the body that stand on a face of the surface to which neither side of them is turned."""
     differs = faces.differs[: len(mesh.elements), 1]
-    for node in np.flatnonzero(differs & (in_zone | in_zone[mesh.before])) if differs.any() else ():
+    for node in indices(differs & (in_zone | in_zone[mesh.before])) if differs.any() else ():
         elements = np.array([element for element in (mesh.before[node], node) if in_zone[element]])
         normals, nodes = faces.normals[[node], 1], np.array([node])
         opposite = across.max(axis=0)[node]
@@ -309,7 +309,7 @@ def _joined(
         jumps |= (first_alike >= 0) & jumps[first_alike]
         first_alike[jumps] = -1
     alone = first_alike == np.arange(len(node))
-    own, number, sense = np.flatnonzero(alone), alone.cumsum() - 1, np.ones(len(node))
+    own, number, sense = indices(alone), alone.cumsum() - 1, np.ones(len(node))
     if len(own) < len(node):
         sense[(normals * normals[first_alike]).sum(axis=1) < 0] = -1.0
         number = np.where(first_alike < 0, -1, number[first_alike])
@@ -339,7 +339,7 @@ def _joined(
         senses.append(signs)
     shares = 3 * np.concatenate(elements)[:, None] + np.arange(3)
     share, point = shares.ravel(), np.concatenate(points).ravel()
-    once = np.flatnonzero(point >= 0)
+    once = indices(point >= 0)
     if len(pieces) > 1:  # zones that share an edge and a face share its points
         once = once[_once(share[once] * len(node) + point[once])]
     element, local = np.divmod(share[once], 3)
@@ -373,7 +373,7 @@ def _once(code: IntArray) -> IntArray:
     order = code.argsort(kind="stable")
     first = np.ones(len(code), bool)
     first[order[1:]] = code[order[1:]] != code[order[:-1]]
-    return np.flatnonzero(first)
+    return indices(first)
 
 
 def _first_alike(
@@ -389,8 +389,8 @@ def _first_alike(
     if len(_once(code)) == len(code):
         return first
     _, place = np.unique(code, return_inverse=True)
-    for j in np.flatnonzero(np.bincount(place)[place] > 1).tolist():
-        same = [i for i in np.flatnonzero(place == place[j]).tolist() if tool[i] == tool[j]]
+    for j in indices(np.bincount(place)[place] > 1).tolist():
+        same = [i for i in indices(place == place[j]).tolist() if tool[i] == tool[j]]
         turned = {i: 1.0 if near[i] == near[j] else -1.0 for i in same}
         same = [i for i in same if np.hypot(*(normals[i] - turned[i] * normals[j])) <= ALIKE]
         least = min(gap[i] for i in same)
@@ -409,8 +409,8 @@ def _jumps(sides: IntArray, kinds: IntArray, normals: Array, tool: ObjectArray) 
     jumps, order = np.zeros(len(sides), bool), np.argsort(sides, axis=1)
     sides, kinds = (np.take_along_axis(values, order, axis=1) for values in (sides, kinds))
     place = np.unique(sides, axis=0, return_inverse=True)[1].reshape(-1)
-    for j in np.flatnonzero(np.bincount(place)[place] > 1).tolist():
-        others = np.flatnonzero((place == place[j]) & (kinds != kinds[j]).any(axis=1))
+    for j in indices(np.bincount(place)[place] > 1).tolist():
+        others = indices((place == place[j]) & (kinds != kinds[j]).any(axis=1))
         jumps[j] = any(tool[i] == tool[j] and abs(cross(normals[i], normals[j])) < SMOOTH for i in others.tolist())
     return jumps
 

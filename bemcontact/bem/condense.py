@@ -10,7 +10,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from bemcontact.arrays import Array, IntArray, successive
+from bemcontact.arrays import Array, IntArray, magnitudes, successive
 from bemcontact.bem.body import Body
 from bemcontact.bem.bonds import Bond, eliminate
 from bemcontact.bem.boundary_values import BoundaryState
@@ -26,6 +26,7 @@ from bemcontact.bem.system import System
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import Gauge, fix_gauge
 from bemcontact.contact.load_cases import LoadCases, Tools
+from bemcontact.problems.curves import cross
 from bemcontact.problems.problem import Problem
 
 
@@ -99,7 +100,7 @@ class Condensation:
     @property
     def factors(self) -> Array:
         """Factors of the loadings (1 + c,)."""
-        return np.append(1.0, self.contact.cases.factors)
+        return np.concatenate([[1.0], self.contact.cases.factors])
 
 
 Condenser = Callable[[Problem], Condensation]
@@ -345,13 +346,15 @@ def boundary_columns(condensation: Condensation) -> tuple[Array, Array]:
 def _pressed(body: Body) -> Iterator[tuple[IntArray, IntArray, IntArray, Array]]:
     """(Element, local node) pairs (q,), points (q,) whose pressure they carry, and traction (q, 2) by a unit of it.
 
-    First those of the bodies that touch, then those of the other elastic bodies, then those of bonds.
+    First those of the bodies that touch, then those of the other elastic bodies, then those of bonds, if any.
     """
     points, bonds = body.points, body.bonds
     other = points.opposite
     yield points.element, points.local, points.point, points.tractions
-    yield other.element, other.local, points.point[other.share], other.traction
-    yield bonds.element, bonds.local, len(points) + bonds.component, bonds.tractions
+    if len(other.share):
+        yield other.element, other.local, points.point[other.share], other.traction
+    if len(bonds):
+        yield bonds.element, bonds.local, len(points) + bonds.component, bonds.tractions
 
 
 def _boundary(
@@ -387,12 +390,13 @@ def _force_balance(condensation: Condensation, traction: Array) -> float:
     body, largest = condensation.body, 0.0
     mesh, acting = body.mesh, body.acting
     for number, part in enumerate(mesh.parts):
-        own, every = part.mesh, all_rigid_motions(part.mesh)
-        forces = own.tributary[..., None] * traction[part.elements]
-        loads = own.tributary[..., None] * acting.values.traction[part.elements]
-        true = every.work_of(acting.true_forces[number], acting.true_moments[number], about=mesh.center)
-        resultant = every.work(own.nodes[own.elements], forces - loads) + true
-        magnitude = np.hypot(forces[..., 0], forces[..., 1]).sum() + acting.of_part(part).particular.magnitude
+        own, length = part.mesh, part.mesh.tributary[..., None]
+        forces, loads = length * traction[part.elements], length * acting.values.traction[part.elements]
+        reactions = forces - loads
+        force = reactions.sum(axis=(0, 1)) + acting.true_forces[number]
+        moment = float(cross(own.nodes[own.elements] - mesh.center, reactions).sum() + acting.true_moments[number])
+        resultant = all_rigid_motions(own).work_of(force, moment, about=mesh.center)
+        magnitude = magnitudes(forces).sum() + acting.particular.magnitude
         largest = max(largest, float(abs(resultant).max() / magnitude) if magnitude > 0 else 0.0)
     return largest
 
@@ -409,7 +413,7 @@ def _slack(condensation: Condensation, pressure: Array) -> float:
 def _slack_of(part: CondensedPart, pressure: Array, factors: Array) -> float:
     """The same of one body."""
     system = part.system
-    scaled = np.append(factors, pressure[system.points.number] / system.stress)
+    scaled = np.concatenate([factors, pressure[system.points.number] / system.stress])
     slack = part.response.rows(np.arange(system.unknowns.size, system.size))
     if len(slack) == 0:
         return 0.0

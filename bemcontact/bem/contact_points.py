@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
+from bemcontact.arrays import Array, BoolArray, IntArray, indices, magnitudes
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.unit_pressures import UnitPressures
@@ -122,7 +122,7 @@ class ContactPoints:
         for zone, elements in self.facing.items():
             own = self.zone_of_share == zone
             facing[own] = elements[self.element[own]]
-        share = np.flatnonzero(facing >= 0)
+        share = indices(facing >= 0)
         element, local, point = facing[share], 2 - self.local[share], self.point[share]
         turned = (self.sense < 0).astype(int)
         own = self.mesh.elements[self.element[share], self.local[share]]
@@ -147,7 +147,7 @@ class ContactPoints:
         work in any motion, also in one that would part them.
         """
         other, node, gap, change = self.opposite, self.node, np.arange(len(self)), self.normals
-        has = np.flatnonzero(other.node >= 0)
+        has = indices(other.node >= 0)
         if len(has):
             node, gap = np.concatenate([node, other.node[has]]), np.concatenate([gap, has])
             change = np.concatenate([change, -change[has]])
@@ -181,14 +181,14 @@ class ContactPoints:
         of_parts = list[UnitPressures]()
         for part in self.mesh.parts:
             first, last, _ = part.elements.indices(len(self.mesh.elements))
-            own = np.flatnonzero((element >= first) & (element < last))
+            own = indices((element >= first) & (element < last))
             new = np.full(len(self.mesh.nodes), -1)
             new[part.nodes] = np.arange(len(part.mesh.nodes))
-            seen, pressed = np.flatnonzero(new[node] >= 0), np.zeros(len(self), bool)
+            seen, pressed = indices(new[node] >= 0), np.zeros(len(self), bool)
             pressed[point[own]] = True
             of_parts.append(
                 UnitPressures(
-                    number=np.flatnonzero(pressed), element=element[own] - first, local=local[own],
+                    number=indices(pressed), element=element[own] - first, local=local[own],
                     pressure=(pressed.cumsum() - 1)[point[own]], traction=traction[own], node=new[node[seen]],
                     gap=gap[seen], change=change[seen],
                 )

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, indices
 from bemcontact.bem import reference_element
 from bemcontact.bem.division import Facing, divided
 from bemcontact.problems.conditions import Along
@@ -84,7 +84,7 @@ class Mesh:
         for number, facing in enumerate(self.facing.get(contact) for contact in contacts):
             if facing is not None:
                 on = facing >= 0 if touching is None else (facing >= 0) & touching[number]
-                across[facing[on]], across[on] = np.flatnonzero(on), facing[on]
+                across[facing[on]], across[on] = indices(on), facing[on]
         return across
 
     def ends_of_joints(self, across: IntArray) -> BoolArray:
@@ -115,7 +115,7 @@ class Mesh:
         """Nodes (k,) of some elements, ascending."""
         own = np.zeros(len(self.nodes), bool)
         own[self.elements[elements]] = True
-        return np.flatnonzero(own)
+        return indices(own)
 
     @cached_property
     def before(self) -> IntArray:
@@ -298,7 +298,7 @@ def elements_of_loops(after: IntArray) -> IntArray:
 def runs(mesh: Mesh, in_zone: BoolArray) -> Iterator[tuple[IntArray, bool]]:
     """Unbroken pieces of a zone: their elements in order, and whether the piece closes on itself."""
     after, left = mesh.elements[:, 2].tolist(), in_zone.tolist()
-    for start in (*np.flatnonzero(in_zone & ~in_zone[mesh.before]).tolist(), *np.flatnonzero(in_zone).tolist()):
+    for start in (*indices(in_zone & ~in_zone[mesh.before]).tolist(), *indices(in_zone).tolist()):
         if not left[start]:
             continue
         run, element = [], start

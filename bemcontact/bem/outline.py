@@ -4,11 +4,12 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.arrays import Array, BoolArray, IntArray, indices
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
 from bemcontact.problems.body_surface import AnyShape, AnySurface, BodySurface
@@ -74,7 +75,7 @@ class Outline:
         taken = np.zeros_like(local)
         taken[:, NODES] = np.inf
         for number, found in narrow:
-            places, own = np.array(found, float), np.flatnonzero(self.mesh.edge == number)
+            places, own = np.array(found, float), indices(self.mesh.edge == number)
             elements = own[np.minimum(np.searchsorted(fractions[own, 2], places), len(own) - 1)]
             first, _, last = fractions[elements].T
             xi = (2 * (places - first) / (last - first) - 1)[:, None]
@@ -97,21 +98,23 @@ class Outline:
     @cached_property
     def _moved_samples(self) -> IntArray:
         """Elements (k,) of which a sample is not where it is in most of them."""
-        return np.flatnonzero((self.local != SAMPLES).any(axis=1))
+        return indices((self.local != SAMPLES).any(axis=1))
 
     @cached_property
     def shapes(self) -> Array:
         """Shape functions (m, 17, 3) at the samples."""
         shapes, other = np.empty((*self.local.shape, 3)), self._moved_samples
         shapes[:] = SHAPES
-        shapes[other] = reference_element.values(self.local[other])
+        if len(other):
+            shapes[other] = reference_element.values(self.local[other])
         return shapes
 
     def interpolated(self, values: Array) -> Array:
         """Values (m, 17, 2) at the samples, from those (m, 3, 2) at the nodes of elements: most by one product."""
         other = self._moved_samples
         result = (values.transpose(0, 2, 1).reshape(-1, 3) @ SHAPES.T).reshape(-1, 2, len(SAMPLES)).transpose(0, 2, 1)
-        result[other] = reference_element.values(self.local[other]) @ values[other]
+        if len(other):
+            result[other] = self.shapes[other] @ values[other]
         return result
 
     @cached_property
@@ -142,7 +145,7 @@ class Outline:
             on = edge == number
             if not on.any():
                 continue
-            own = np.flatnonzero(mesh.edge == mesh.edge_names.index(name))
+            own = indices(mesh.edge == mesh.edge_names.index(name))
             at = np.searchsorted(mesh.fractions[own, 2], fractions[on])
             element[on] = own[np.minimum(at, len(own) - 1)]
         first, middle, last = mesh.fractions[element].T
@@ -159,17 +162,16 @@ class Outline:
 
     def _on_edges(self, elements: IntArray, xi: Array, values: Callable[[Edge, Array], Array]) -> Array:
         """Values (k, q, 2) of edges by fractions of their length, at local coordinates ξ (k, q) of elements (k,)."""
-        number, (first, middle, last) = self.mesh.edge[elements], self.mesh.fractions[elements].T[..., None]
-        along = first + (last - first) * (1 + xi) / 2
-        along += (middle - (first + last) / 2) * (1 - xi**2)  # not zero where an element faces one of another body
-        along = np.minimum(np.maximum(along, first), last)
-        edges = sorted({*number.tolist()})
-        if len(edges) == 1:
-            return values(self.edges[edges[0]], along.ravel()).reshape(*xi.shape, 2)
+        number, (start, middle, end) = self.mesh.edge[elements], self.mesh.fractions[elements].T[..., None]
+        along = start + (end - start) * (1 + xi) / 2
+        along += (middle - (start + end) / 2) * (1 - xi * xi)  # not zero where an element faces one of another body
+        along = np.minimum(np.maximum(along, start), end)
         result = np.empty((*xi.shape, 2))
-        for i in edges:
-            on = number == i
-            result[on] = values(self.edges[i], along[on].ravel()).reshape(-1, xi.shape[1], 2)
+        changes = (indices(number[1:] != number[:-1]) + 1).tolist()
+        for first, last in pairwise([0, *changes, len(number)]) if len(number) else ():  # elements that follow another
+            result[first:last] = values(self.edges[number[first]], along[first:last].ravel()).reshape(
+                -1, xi.shape[1], 2
+            )
         return result
 
     def sampled(self, elements: IntArray) -> Array:

@@ -83,7 +83,7 @@ class RigidMotions:
         """Work (k,) of a force (2,) and a moment about a point (2,), the origin if none is given, in each motion."""
         x, y = self.center - np.asarray(about)
         about_center = moment - (x * force[1] - y * force[0])
-        return self.coefficients @ np.append(force, about_center / self.radius)
+        return self.coefficients @ np.array([force[0], force[1], about_center / self.radius])
 
     def describe(self) -> tuple[str, ...]:
         """Describe each motion: its direction, or the point about which it turns."""

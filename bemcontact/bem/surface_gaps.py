@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes, scalar_products
+from bemcontact.arrays import Array, BoolArray, IntArray, indices, magnitudes, scalar_products
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
 from bemcontact.bem.boundary_values import BoundaryState
@@ -183,7 +183,7 @@ class SurfaceGaps(DisplacedSurfaces):
         paired = self.paired[zone]
         m, ends = len(paired), self._ends(zone, paired)
         depth, xi, behind, hidden = np.full(m, -np.inf), np.zeros(m), np.zeros(m, bool), [-np.inf] * len(ends)
-        of_zone, others = np.flatnonzero(paired), self.near(zone, np.flatnonzero(~paired & self._may_meet(zone)))
+        of_zone, others = indices(paired), self.near(zone, indices(~paired & self._may_meet(zone)))
         self.outline.sampled(np.concatenate([of_zone, others]))  # all at once
         for elements, own in ((of_zone, True), (others, False)):
             if not len(elements):
@@ -248,7 +248,7 @@ class SurfaceGaps(DisplacedSurfaces):
         if not corners.any():
             return beside
         moved = magnitudes(self._against(zone, elements))
-        for corner in np.flatnonzero(corners):
+        for corner in indices(corners):
             beside |= magnitudes(places - mesh.nodes[corner]) <= moved
         return beside
 
@@ -312,7 +312,7 @@ class SurfaceGaps(DisplacedSurfaces):
             return normals
         result = normals.copy()
         for last, neighbor in ((2, mesh.elements[:, 2]), (0, mesh.before)):
-            for own in np.flatnonzero(paired & ~paired[neighbor]).tolist():
+            for own in indices(paired & ~paired[neighbor]).tolist():
                 corner = self.state.points[own, last]
                 normal = self.outline.held_nodes(surface).normals[mesh.elements[own, last], 2 - last]
                 slides = abs(cross(normal, motion))
@@ -393,7 +393,7 @@ class SurfaceGaps(DisplacedSurfaces):
         as_drawn = elastic or surface.way == AS_DRAWN
         drawn = self.outline.held_nodes(surface if as_drawn else surface.after(AS_DRAWN))
         for last, neighbor in ((2, mesh.elements[:, 2]), (0, mesh.before)):
-            for own in np.flatnonzero(paired & ~paired[neighbor]).tolist():
+            for own in indices(paired & ~paired[neighbor]).tolist():
                 beyond, at, held = (
                     int(neighbor[own]),
                     self.state.points[own, last],
@@ -444,7 +444,7 @@ class SurfaceGaps(DisplacedSurfaces):
     def _ahead(self, zone: str, paired: BoolArray, at: Array, along: Array, normal: Array) -> Iterator[float]:
         """Distances [L] from an end of the zone to its next edges on the same line, and to points of the surface."""
         flush, surface = FLUSH * self.size, self.surfaces[zone]
-        of_zone = self.outline.sampled(np.flatnonzero(paired)).reshape(-1, 2)
+        of_zone = self.outline.sampled(indices(paired)).reshape(-1, 2)
         gap, normals = self.undeformed(zone, of_zone)
         points = (of_zone - gap[:, None] * normals)[gap <= flush]
         if isinstance(surface, Polyline | Spline):
@@ -513,7 +513,7 @@ class SurfaceGaps(DisplacedSurfaces):
         bonded = np.zeros(len(mesh.elements), bool)
         for bond in self.problem.bonded:
             if body in (sides := self.problem.sides_of(bond)):
-                facing, own = mesh.facing[bond], np.flatnonzero(mesh.facing[bond] >= 0)
+                facing, own = mesh.facing[bond], indices(mesh.facing[bond] >= 0)
                 bonded[own if sides[1] == body else facing[own]] = True
         return bonded
 
@@ -534,7 +534,7 @@ class SurfaceGaps(DisplacedSurfaces):
         shift = magnitudes(self.way_of_tool(zone).back(moved[:, 1]) - drawn[:, 1])
         if isinstance(surface, BodySurface) and surface.elastic:
             shift += MOST_BETWEEN * self.largest
-        unsure = np.flatnonzero(~near & (gap <= after + shift))
+        unsure = indices(~near & (gap <= after + shift))
         if len(unsure):
             near[unsure] = self.exact(zone, moved[unsure, 1]).gap <= after[unsure]
         return elements[near]

@@ -241,7 +241,7 @@ class CondensedContact(WithHints, MotionAlgebra):
     @property
     def _acting(self) -> tuple[Array, Array]:
         """Factors (1 + c,) of what is permanent and of the cases, and the terms (3 t, 1 + c) of the forces on tools."""
-        factors = np.append(1.0, self.cases.factors)
+        factors = np.concatenate([[1.0], self.cases.factors])
         if not len(self.tools):
             return factors, np.zeros((0, len(factors)))
         of_cases = self.cases.force * self.cases.factors
@@ -441,19 +441,26 @@ class CondensedContact(WithHints, MotionAlgebra):
 
     def touching(self, pressure: Array, displacement: Array) -> BoolArray:
         """Which points (n,) are in contact, p/T > δ/U, from p (n,) [p] and u_n (n,) [L]; robust to tolerances."""
-        p, u_n = self._by_point(pressure, "pressure"), self._by_point(displacement, "displacement")
+        return self._touching(self._by_point(pressure, "pressure"), self._by_point(displacement, "displacement"))
+
+    def _touching(self, p: Array, u_n: Array) -> BoolArray:
+        """`touching` of arrays by contact point."""
         U, T = self.scales
         return p / T > (self.initial_gap + u_n) / U
 
     def pressed(self, pressure: Array, displacement: Array) -> BoolArray:
         """Which points (n,) are in contact under pressure that is no round-off beside the peak, nor that beside T."""
-        p = self._by_point(pressure, "pressure")
-        touching, peak = self.touching(p, displacement), self.peak(p)
-        return touching & (p > PRESSED * peak) if peak else np.zeros_like(touching)
+        p, u_n = self._by_point(pressure, "pressure"), self._by_point(displacement, "displacement")
+        peak = self._peak(p)
+        return self._touching(p, u_n) & (p > PRESSED * peak) if peak else np.zeros(self.size, bool)
 
     def peak(self, pressure: Array) -> float:
         """Largest of the pressures p (n,), [p]; zero if it is round-off beside T."""
-        peak = float(self._by_point(pressure, "pressure").max(initial=0.0))
+        return self._peak(self._by_point(pressure, "pressure"))
+
+    def _peak(self, p: Array) -> float:
+        """`peak` of an array by contact point."""
+        peak = float(p.max(initial=0.0))
         return peak if peak > PEAK * self.scales.pressure else 0.0
 
     def weight_matrix(self, weights: Weights) -> Array:

@@ -89,7 +89,9 @@ class LineSurface(SpecModel):
     @property
     def way(self) -> Way:
         """Motion beside the body after which faces, and with them gaps and normals of contact, are found."""
-        return self._way
+        private = self.__pydantic_private__  # where `self._way` is, which is looked for in all other places first
+        assert private is not None
+        return private["_way"]
 
     def after(self, way: Way) -> Self:
         """Copy after another motion beside the body."""
