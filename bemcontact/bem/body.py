@@ -1,7 +1,7 @@
 """A problem on its mesh, before it is condensed: loadings, contact points, and the motions that contact holds."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -103,7 +103,7 @@ class Body:
         """All free motions of body and tools: those seen, then those unseen."""
         if not len(self.unseen):
             return self.seen
-        return replace(self.seen, coefficients=np.vstack([self.seen.coefficients, self.unseen.coefficients]))
+        return self.seen.with_coefficients(np.concatenate([self.seen.coefficients, self.unseen.coefficients]))
 
     @cached_property
     def factors(self) -> Array:
@@ -140,7 +140,7 @@ class Body:
         """The motions that nothing determines: those that change no gap, and spins."""
         if not (self.problem.spin_centers and len(self.spins)):
             return self.unseen
-        return replace(self.unseen, coefficients=np.vstack([self.unseen.coefficients, self.spins.coefficients]))
+        return self.unseen.with_coefficients(np.concatenate([self.unseen.coefficients, self.spins.coefficients]))
 
     @cached_property
     def pinned(self) -> Pinned:

@@ -60,11 +60,13 @@ def contact_points(
                 free &= ~choice[nodes] | faces.turned(mesh, elements, closed=closed)
             length = arc[-1] + halves[elements[-1], 1] if closed else np.inf
             fixed = not closed and name not in tool_of and not other
-            ends = nodes[ENDS]
-            on_surface = _on_surface(mesh, (values, *cases), ends, normals[ENDS], gap[ENDS])
-            goes_on = _goes_on(mesh, values, elements, normals, on_surface) if fixed else (False, False)
-            at_bond = bonded[ENDS] & (not closed)
-            held = np.where(on_surface & (bonded[ENDS] | (stuck[ENDS] & fixed)), arc[ENDS], np.nan)
+            ends, held, goes_on = nodes[ENDS], np.full(2, np.nan), (False, False)
+            at_bond, to_hold = bonded[ENDS] & (not closed), bonded[ENDS] | (stuck[ENDS] & fixed)
+            beyond = _held_beyond(mesh, values, elements, normals) if fixed else np.zeros(2, bool)
+            if to_hold.any() or beyond.any():
+                on_surface = _on_surface(mesh, (values, *cases), ends, normals[ENDS], gap[ENDS])
+                goes_on = _goes_on(mesh, elements, on_surface & beyond)
+                held[:] = np.where(on_surface & to_hold, arc[ENDS], np.nan)
             at, fast = indices(free), indices(stuck)
             pieces.append(
                 _Piece(
@@ -247,18 +249,18 @@ def _on_surface(mesh: Mesh, values: Sequence[BoundaryValues], nodes: IntArray, n
     return np.all(abs(moved) <= ALIKE * mesh.size, axis=0)
 
 
-def _goes_on(
-    mesh: Mesh, values: BoundaryValues, elements: IntArray, normals: Array, on_surface: BoolArray
-) -> tuple[bool, bool]:
-    """Whether contact continues beyond each end of a run, on an element that a condition holds.
-
-    `on_surface` (2,) is that of both ends.
-    """
+def _held_beyond(mesh: Mesh, values: BoundaryValues, elements: IntArray, normals: Array) -> BoolArray:
+    """Whether a condition holds the element beyond each end of a run (2,) along its last normal."""
     first, after = elements[0], mesh.elements[elements[-1], 2]  # an element has the number of its start node
-    goes_on = on_surface & _held_along(normals[ENDS], values.traction_unknown[[mesh.before[first], after]])
-    if not goes_on.any():
+    return _held_along(normals[ENDS], values.traction_unknown[[mesh.before[first], after]])
+
+
+def _goes_on(mesh: Mesh, elements: IntArray, may: BoolArray) -> tuple[bool, bool]:
+    """Whether contact continues smoothly beyond those ends of a run (2,) where it may."""
+    if not may.any():
         return False, False
-    start, end = (goes_on & (abs(mesh.turns[[first, after]]) < SMOOTH)).tolist()
+    ends = elements[0], mesh.elements[elements[-1], 2]
+    start, end = (may & (abs(mesh.turns[[*ends]]) < SMOOTH)).tolist()
     return start, end
 
 
@@ -323,16 +325,17 @@ def _joined(
                 held_arc[row, end], held_points[row, end] = piece.arc[i], mesh.nodes[piece.nodes[i]]
         point_of = np.full(len(mesh.nodes), -1)
         point_of[piece.nodes] = number[first : first + len(piece.nodes)]
-        sense_of = np.ones(len(mesh.nodes))
-        sense_of[piece.nodes] = sense[first : first + len(piece.nodes)]
         its_nodes = mesh.elements[piece.elements]
-        carrier, signs = point_of[its_nodes], sense_of[its_nodes]
+        carrier, signs = point_of[its_nodes], np.ones(its_nodes.shape)
+        if len(own) < len(node):
+            sense_of = np.ones(len(mesh.nodes))
+            sense_of[piece.nodes] = sense[first : first + len(piece.nodes)]
+            signs = sense_of[its_nodes]
         if jumps.any():
             at_jump = np.isin(its_nodes, piece.nodes[jumps[first : first + len(piece.nodes)]])
             carrier, signs = (np.where(at_jump, values[:, [1]], values) for values in (carrier, signs))
-        beyond = piece.bonded | piece.goes_on
-        for goes_on, element, end in zip(beyond.tolist(), (0, -1), (0, 2), strict=True):
-            if goes_on:
+        for bonded, goes_on, element, end in zip(piece.bonded.tolist(), piece.goes_on, (0, -1), (0, 2), strict=True):
+            if bonded or goes_on:
                 carrier[element, end] = carrier[element, 1]
         elements.append(piece.elements)
         points.append(carrier)

@@ -181,15 +181,18 @@ class ContactPoints:
         of_parts = list[UnitPressures]()
         for part in self.mesh.parts:
             first, last, _ = part.elements.indices(len(self.mesh.elements))
-            own = indices((element >= first) & (element < last))
-            new = np.full(len(self.mesh.nodes), -1)
-            new[part.nodes] = np.arange(len(part.mesh.nodes))
-            seen, pressed = indices(new[node] >= 0), np.zeros(len(self), bool)
+            own = seen = slice(None)
+            new, pressed = node, np.zeros(len(self), bool)
+            if not isinstance(part.nodes, slice):
+                number = np.full(len(self.mesh.nodes), -1)
+                number[part.nodes] = np.arange(len(part.mesh.nodes))
+                new = number[node]
+                own, seen = indices((element >= first) & (element < last)), indices(new >= 0)
             pressed[point[own]] = True
             of_parts.append(
                 UnitPressures(
                     number=indices(pressed), element=element[own] - first, local=local[own],
-                    pressure=(pressed.cumsum() - 1)[point[own]], traction=traction[own], node=new[node[seen]],
+                    pressure=(pressed.cumsum() - 1)[point[own]], traction=traction[own], node=new[seen],
                     gap=gap[seen], change=change[seen],
                 )
             )  # fmt: skip

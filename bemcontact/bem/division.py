@@ -119,8 +119,10 @@ def feet(item: Matched, edge: Edge, at: Array) -> Array:
 
 def _thirds(ends: Array) -> Array:
     """Start, middle and end (..., e, 3) of elements with these ends (..., e + 1)."""
-    starts, stops = ends[..., :-1], ends[..., 1:]
-    return np.stack([starts, (starts + stops) / 2, stops], axis=-1)
+    thirds = np.empty((*ends.shape[:-1], ends.shape[-1] - 1, 3))
+    thirds[..., 0], thirds[..., 2] = ends[..., :-1], ends[..., 1:]
+    thirds[..., 1] = (thirds[..., 0] + thirds[..., 2]) / 2
+    return thirds
 
 
 def _with_ends(ends: Array, places: Sequence[float], edge: Edge) -> Array:

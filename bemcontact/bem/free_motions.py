@@ -1,7 +1,8 @@
 """Motions in which bodies and tools move rigidly together: those that contact sees, the others, and their names."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from typing import Self
 
 import numpy as np
 
@@ -51,6 +52,15 @@ class PlacedTools:
     position: Array
     force: Array
 
+    @classmethod
+    def none(cls, points: int, loadings: int) -> Self:
+        """No tool, for n contact points and 1 + c loadings."""
+        terms = np.zeros((0, loadings))
+        return cls(
+            names=(), point=np.zeros((0, 2)), places=np.zeros((points, 2)), motions=np.zeros((points, 0)),
+            free=np.zeros(0, bool), position=terms, force=terms,
+        )  # fmt: skip
+
     def poles(self, points: ContactPoints) -> Array:
         """Poles (t, 2) of rotation [L]: the middle of a tool's contact points, in directions in which the tool is free.
 
@@ -68,6 +78,8 @@ class PlacedTools:
 def placed_tools(problem: Problem, points: ContactPoints) -> PlacedTools:
     """Compute the motions of the contact points with the tools of a problem."""
     tools, cases = problem.tools, problem.load_cases
+    if not tools:
+        return PlacedTools.none(len(points), 1 + len(cases))
     names = tuple(problem.zones)
     places = points.mesh.nodes[points.node] - steps_of_surfaces(problem)[points.zone]
     motions, about = np.zeros((len(points), 3 * len(tools))), []
@@ -136,6 +148,13 @@ class FreeMotions:
         """Motions of a body in each of them."""
         return self._part(number)
 
+    def with_coefficients(self, coefficients: Array) -> "FreeMotions":
+        """Other motions (k, 3 b + 3 t) of the same bodies and tools."""
+        return FreeMotions(
+            coefficients=coefficients, names=self.names, centers=self.centers, to_points=self.to_points,
+            radius=self.radius, bodies=self.bodies, halves=self.halves, unit_changes=self.unit_changes,
+        )  # fmt: skip
+
     @property
     def of_bodies(self) -> Array:
         """Coefficients (k, 3 b) of the bodies."""
@@ -160,7 +179,7 @@ class FreeMotions:
 
     def combined(self, factors: Array) -> "FreeMotions":
         """Combinations of these motions by the columns of factors (k, j)."""
-        return replace(self, coefficients=factors.T @ self.coefficients)
+        return self.with_coefficients(factors.T @ self.coefficients)
 
     def describe(self) -> tuple[str, ...]:
         """Describe each motion, with what moves unless it is an only body."""
@@ -226,7 +245,7 @@ class FreeMotions:
     def along(self, motion: int) -> "FreeMotions":
         """Unit translations along x and y of what moves first in a motion."""
         part = self._moving(motion)[0]
-        return replace(self, coefficients=np.eye(self.coefficients.shape[1])[3 * part : 3 * part + 2])
+        return self.with_coefficients(np.eye(self.coefficients.shape[1])[3 * part : 3 * part + 2])
 
     def rotations(self, centers: Sequence[Point | None]) -> "FreeMotions":
         """Rotation of each body about a center [L], if it is given one."""
@@ -235,7 +254,7 @@ class FreeMotions:
             if center is not None:
                 x, y = (np.array(center) - self.centers[number]) / self.radius
                 rows[number, 3 * number : 3 * number + 3] = y, -x, 1.0
-        return replace(self, coefficients=rows[rows.any(axis=1)])
+        return self.with_coefficients(rows[rows.any(axis=1)])
 
     def turns(self, motion: int) -> bool:
         """Whether something turns in a motion."""
@@ -304,8 +323,9 @@ def free_motions(
         alone = _null_vectors(together[: len(body)].T)
         seen, unseen = np.vstack([echelon(alone.T @ body), loaded]), np.vstack([lost, idle, echelon(together.T @ both)])
     seen = _along_walls(_counterclockwise(seen), [change[:, :2] for change in changes])
-    of_seen, of_unseen = (replace(every, coefficients=own) for own in (seen, _counterclockwise(unseen)))
-    return of_seen, of_unseen, replace(every, coefficients=apart)
+    motions = seen, _counterclockwise(unseen), apart
+    of_seen, of_unseen, of_apart = map(every.with_coefficients, motions)
+    return of_seen, of_unseen, of_apart
 
 
 def _along_walls(motions: Array, normals: Sequence[Array]) -> Array:

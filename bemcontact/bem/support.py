@@ -46,7 +46,7 @@ def ensure_held(body: Body) -> None:
 
 def _rest_in_bore(body: Body) -> str:
     """Say where a round body has to be drawn in a round bore so that its load goes through the middle of the bore."""
-    problem, unit = body.problem, replace(body.seen, coefficients=np.eye(body.seen.coefficients.shape[1]))
+    problem, unit = body.problem, body.seen.with_coefficients(np.eye(body.seen.coefficients.shape[1]))
     bores = [zone.surface for zone in problem.zones.values()]
     rims = [problem.edge(name).curve for zone in problem.zones for name in problem.edges_of(zone)]
     if problem.several or problem.tools or not all(isinstance(it, Circle) and it.body == "inside" for it in bores):
