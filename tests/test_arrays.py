@@ -1,10 +1,12 @@
 """The residual of nonnegative least squares, judged by its optimality conditions."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import scipy
 
-from bemcontact.arrays import nonnegative_residual
+from bemcontact.arrays import freeze_arrays, nonnegative_residual
 
 
 def of_whole_numbers(rng, k, n):
@@ -62,3 +64,16 @@ def test_ties_are_no_descent():
     columns = np.array([[0, -1, 0, -1, 0], [-1, -1, -1, 1, -1], [-1, 0, 1, 1, -1], [1, -1, 0, 0, 1]], float)
     residual = nonnegative_residual(columns, np.array([1.0, 0, 1, 1]))
     np.testing.assert_allclose(residual, [-1, -0.5, -0.5, -1], rtol=1e-15)
+
+
+def test_nobody_can_write_to_frozen_arrays():
+    """Copied are arrays that somebody may write to, also by what they are views of; others are shared."""
+    mine, own = np.zeros(3), np.zeros(3)
+    view = mine[:2]
+    view.setflags(write=False)
+    own.setflags(write=False)
+    holder = SimpleNamespace(mine=mine, view=view, own=own)
+    freeze_arrays(holder)
+    mine[:] = 1.0
+    assert not any(array.any() or array.flags.writeable for array in vars(holder).values())
+    assert holder.own is own

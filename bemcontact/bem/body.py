@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.bonds import BondedPoints
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.free_motions import UNSEEN, FreeMotions, PlacedTools, steps_of_surfaces
@@ -188,10 +188,15 @@ class Body:
         """Work (k, 1 + c) of each loading in the seen motions, as of `motion_load`."""
         return self.motion_load(self.seen)
 
+    @cached_property
+    def with_bodies(self) -> BoolArray:
+        """Whether an elastic body takes part in each of the seen motions (k,)."""
+        return np.asarray(self.seen.of_bodies.any(axis=1))
+
     @property
     def algebra(self) -> MotionAlgebra:
         """The seen motions that elastic bodies take part in."""
-        own = np.any(self.seen.of_bodies, axis=1)
+        own = self.with_bodies
         return MotionAlgebra(
             rigid_motions=self.seen_motion[:, own], weights=self.points.tributary, motion_load=self.seen_load[own]
         )
@@ -254,9 +259,9 @@ def _mixed_states(problem: Problem) -> Iterator[str]:
 def _left_out(problem: Problem) -> Iterator[str]:
     """Note edges with conditions that can see the surface of a zone that names no edges."""
     for name, zone in problem.zones.items():
-        touching = problem.edges_of(name)
-        if isinstance(zone, BodyZone):
+        if isinstance(zone, BodyZone) or zone.edges is not None:
             continue
+        touching = problem.edges_of(name)
         others = [edge for edge in zone_edges(problem.edges, zone, ()) if edge not in touching]
         if others:
             names, it = ", ".join(f"'{edge}'" for edge in others), "it has" if len(others) == 1 else "they have"

@@ -243,20 +243,21 @@ class ContactPoints:
     @cached_property
     def consistent(self) -> Array:
         """(n, n) [L]: Σ over elements of ∫ h hᵀ |dx/dξ| dξ, [SS92] (24)-(25)."""
-        one_more, xi = len(self) + 1, reference_element.gauss_legendre(CONSISTENT_ORDER)[0]
+        one_more, (slopes, products) = len(self) + 1, _consistent_rule()
         owner = np.full((max(self.zone, default=0) + 1, len(self.mesh.elements), 3), len(self))  # else one too many
         owner[self.zone_of_share, self.element, self.local] = self.point
         of_zone, element = np.nonzero((owner < len(self)).any(axis=2))
         i = owner[of_zone, element]
-        local = magnitudes(self.mesh.tangents_at(xi)[element]) @ _products_of_shapes()
+        nodes = self.mesh.nodes[self.mesh.elements[element]]
+        local = magnitudes(slopes @ (nodes - nodes[:, 1:2])) @ products
         place = i[:, :, None] * one_more + i[:, None]
         sums = np.bincount(place.ravel(), local.ravel(), one_more**2).astype(float)
         return sums.reshape(one_more, -1)[:-1, :-1]
 
 
 @lru_cache(maxsize=1)
-def _products_of_shapes() -> Array:
-    """N_k N_l times the weights of Gauss points (q, 9) for the consistent weights."""
+def _consistent_rule() -> tuple[Array, Array]:
+    """For the consistent weights, at Gauss points: dN_k/dξ (q, 3), and N_k N_l times the weights (q, 9)."""
     xi, weights = reference_element.gauss_legendre(CONSISTENT_ORDER)
     N = reference_element.values(xi)
-    return (N[:, :, None] * N[:, None] * weights[:, None, None]).reshape(-1, 9)
+    return reference_element.derivatives(xi), (N[:, :, None] * N[:, None] * weights[:, None, None]).reshape(-1, 9)
