@@ -42,7 +42,7 @@ def workers() -> int:
 
 def share_out(work: Callable[[Sequence[Item]], object], items: Sequence[Item]) -> None:
     """Let `work` do all items, some in each of several threads; with one worker or one item, in this thread."""
-    count = min(len(items), workers())
+    count = min(len(items), workers()) if len(items) > 1 else 1
     if count == 1:
         work(items)
         return

@@ -1,6 +1,6 @@
 """A problem on its mesh, before it is condensed: loadings, contact points, and the motions that contact holds."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -17,6 +17,7 @@ from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.contact.free_motions import MotionAlgebra
 from bemcontact.contact.load_cases import BALANCED, Pinned
+from bemcontact.problems.bodies import Part
 from bemcontact.problems.body_surface import BodyZone
 from bemcontact.problems.material import Material
 from bemcontact.problems.problem import Problem
@@ -212,17 +213,16 @@ class Body:
     @property
     def notes(self) -> tuple[str, ...]:
         """Decisions that a user should know."""
-        ways = self.pinned_motions.describe()
+        ways, parts = self.pinned_motions.describe(), self.problem.parts
         at_zero = [f"the {way} moves no contact point and has no load: it is held at zero" for way in ways]
         if len(ways) > MANY:
             at_zero = [f"these move no contact point and have no load, and are held at zero: the {', the '.join(ways)}"]
-        materials = [part.material for part in self.problem.parts]
         stated = dict.fromkeys(
             doubt
-            for material in materials
-            for doubt in self.problem.units.doubts(material.young_modulus, material.poisson_ratio)
+            for part in parts
+            for doubt in self.problem.units.doubts(part.material.young_modulus, part.material.poisson_ratio)
         )
-        return (*_left_out(self.problem), *_mixed_states(self.problem), *self._wedges(), *at_zero, *stated)
+        return (*_left_out(self.problem), *_mixed_states(parts), *self._wedges(), *at_zero, *stated)
 
     def _wedges(self) -> Iterator[str]:
         """Note contact points that conditions hold nearly along the rigid normal, and that slide into a wedge.
@@ -230,7 +230,10 @@ class Body:
         Opposite to another elastic body pressure is bounded, for that one gives way.
         """
         points = self.points
-        free = np.where(self.loadings[0].values.displacement_given[points.node], 0.0, points.normals)
+        given = self.loadings[0].values.displacement_given[points.node]
+        if not given.any():
+            return
+        free = np.where(given, 0.0, points.normals)
         part = np.hypot(*free.T)
         for i in np.flatnonzero((part < WEDGE) & (points.opposite.node < 0)).tolist():
             x, y = self.mesh.nodes[points.node[i]].tolist()
@@ -242,10 +245,10 @@ class Body:
             )
 
 
-def _mixed_states(problem: Problem) -> Iterator[str]:
+def _mixed_states(parts: Sequence[Part]) -> Iterator[str]:
     """Note bodies in plane stress beside others in plane strain."""
     states: dict[str, list[str]] = {}
-    for part in problem.parts:
+    for part in parts:
         states.setdefault(part.material.state.replace("_", " "), []).append(f"'{part.name}'")
     if len(states) > 1:
         which = ", and ".join(f"{', '.join(names)} in {state}" for state, names in states.items())

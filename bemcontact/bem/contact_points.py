@@ -215,7 +215,9 @@ class ContactPoints:
         that has a point at this node too.
         """
         zones = self.zone[self.point]
-        has = np.zeros((max(self.zone, default=0) + 1, len(self.mesh.elements), 3), bool)
+        if not self.zone.any():
+            return zones
+        has = np.zeros((self.zone.max() + 1, len(self.mesh.elements), 3), bool)
         has[zones, self.element, self.local] = True
         middle = has[:, self.element, 1]
         other = middle.argmax(axis=0)
@@ -224,10 +226,9 @@ class ContactPoints:
 
     def tributary_by_zone(self, zones: int) -> Array:
         """(zones, n) [L]: the parts of the tributary lengths in each zone, negative with the sides exchanged."""
-        lengths = np.zeros((zones, len(self)))
         signed = self.sense * self.mesh.tributary[self.element, self.local]
-        np.add.at(lengths, (self.zone_of_share, self.point), signed)
-        return lengths
+        place = self.zone_of_share * len(self) + self.point
+        return np.bincount(place, signed, zones * len(self)).astype(float).reshape(zones, -1)
 
     @cached_property
     def tributary(self) -> Array:
@@ -244,7 +245,7 @@ class ContactPoints:
     def consistent(self) -> Array:
         """(n, n) [L]: Σ over elements of ∫ h hᵀ |dx/dξ| dξ, [SS92] (24)-(25)."""
         one_more, (slopes, products) = len(self) + 1, _consistent_rule()
-        owner = np.full((max(self.zone, default=0) + 1, len(self.mesh.elements), 3), len(self))  # else one too many
+        owner = np.full((self.zone.max(initial=0) + 1, len(self.mesh.elements), 3), len(self))  # else one too many
         owner[self.zone_of_share, self.element, self.local] = self.point
         of_zone, element = np.nonzero((owner < len(self)).any(axis=2))
         i = owner[of_zone, element]

@@ -222,8 +222,8 @@ class Influence:
         far = np.flatnonzero((rho > SHARED_RULE_RHO) & (radius <= RATIO * (abs(c0 - middle) - c1 - c2)))
         tiers, rho = np.full(len(nodes), -1), rho[far]
         if len(far):
-            without_U = reference_element.tier(rho, reference_element.RHO_OF_T)
-            tiers[far] = np.where(self._slot[far] >= 0, reference_element.tier(rho), without_U)
+            of_tractions = reference_element.tier(rho, reference_element.RHO_OF_T)
+            tiers[far] = np.where(self._slot[far] >= 0, reference_element.tier(rho), of_tractions)
         return tiers
 
     def _far(self, rows: slice, z: ComplexArray, nodes: ComplexArray, tiers: IntArray, space: _Space) -> InfluenceRows:

@@ -311,6 +311,8 @@ class System:
         None of these displacements is prescribed.
         """
         sprung = self._sprung
+        if not len(sprung):
+            return sprung, sprung, sprung, np.zeros((0, 2))
         K = self.values.stiffness[sprung] * (self.length / self.stress)
         columns = self.unknowns.displacement[self.mesh.elements[sprung]]
         number, local, axis = np.nonzero(K.any(axis=2) & (columns >= 0))
