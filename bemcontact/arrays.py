@@ -16,6 +16,8 @@ BoolArray = NDArray[np.bool_]
 ComplexArray = NDArray[np.complex128]
 ObjectArray = NDArray[np.object_]
 
+_DOUBLE = np.dtype(np.float64)
+
 BLOCK = 32
 """Rows of which products are held at a time, so that they stay in the cache."""
 NO_ANGLE = 1e-12
@@ -32,13 +34,14 @@ def real_array(value: Any, what: str, shape: Dimensions | None = None, *, finite
     too large to compute with, unless `finite` is False. The array is not copied if it is one already.
     """
     array = value if type(value) is np.ndarray else _as_array(value, what)
-    if array.dtype != np.float64:
+    if array.dtype != _DOUBLE:
         if array.dtype.kind == "O" and all(is_real(entry) for entry in array.flat):
             array = _as_floats(array, what)
         if array.dtype.kind not in "iuf" and array.size:
             raise ProblemError(f"{what} must contain real numbers; found {_described(value, array)}")
         array = np.asarray(array, dtype=float)
-    _ensure_shape(array, what, shape)
+    if array.shape != shape:
+        _ensure_shape(array, what, shape)
     if finite and not _is_moderate(array):
         _complain(array, what)
     return array
@@ -46,7 +49,7 @@ def real_array(value: Any, what: str, shape: Dimensions | None = None, *, finite
 
 def _is_moderate(array: Array) -> bool:
     """Whether all entries are numbers and not too large; the square of nearly all arrays without others tells."""
-    squared = np.vdot(array, array)
+    squared = np.vdot(array, array) if array.size else 0.0
     return bool(squared <= LARGEST_NUMBER**2 or (np.abs(array) <= LARGEST_NUMBER).all())  # not what is not a number
 
 
@@ -77,9 +80,9 @@ def read_arrays(
 
 
 def freeze_arrays(instance: Any) -> None:
-    """Replace the arrays of a frozen dataclass by read-only copies."""
+    """Replace the arrays of a frozen dataclass by read-only copies, but for those that are read-only and no views."""
     for name, value in [*vars(instance).items()]:
-        if isinstance(value, np.ndarray):
+        if isinstance(value, np.ndarray) and (value.flags.writeable or value.base is not None):
             frozen = value.copy()
             frozen.setflags(write=False)
             object.__setattr__(instance, name, frozen)

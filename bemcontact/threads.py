@@ -9,7 +9,7 @@ import os
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ContextDecorator, contextmanager
+from contextlib import AbstractContextManager, ContextDecorator, contextmanager, nullcontext
 from functools import lru_cache
 from typing import TypeVar
 
@@ -24,6 +24,8 @@ WORTH_THREADS = 1e10
 Less work takes less than half a second on one thread. Two threads nearly halve that on idle processors. On busy ones
 they wait for each other, and take up to three times as long; for more work they lose nothing there.
 """
+UNCHANGED = nullcontext()
+"""Context in which BLAS takes as many threads as it does."""
 
 
 def processors() -> int:
@@ -40,7 +42,7 @@ def workers() -> int:
 
 def share_out(work: Callable[[Sequence[Item]], object], items: Sequence[Item]) -> None:
     """Let `work` do all items, some in each of several threads; with one worker or one item, in this thread."""
-    count = min(len(items), workers())
+    count = min(len(items), workers()) if len(items) > 1 else 1
     if count == 1:
         work(items)
         return
@@ -81,18 +83,21 @@ class _OneThread(ContextDecorator):
             if before > 1:
                 library.set_num_threads(threads or before)
 
-    @contextmanager
-    def lifted(self, products: float) -> Iterator[None]:
+    def lifted(self, products: float) -> AbstractContextManager[None]:
         """As many threads as before, for so many products of two numbers if these are worth it."""
-        many = products >= WORTH_THREADS
+        return self._many_threads() if products >= WORTH_THREADS else UNCHANGED
+
+    @contextmanager
+    def _many_threads(self) -> Iterator[None]:
+        """As many threads as before."""
         with self.lock:
-            if many and self.users:
+            if self.users:
                 self._set(None)
         try:
             yield
         finally:
             with self.lock:
-                if many and self.users:
+                if self.users:
                     self._set(1)
 
 

@@ -1,10 +1,12 @@
 """The residual of nonnegative least squares by its optimality conditions; least squares and singular values."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import scipy
 
-from bemcontact.arrays import least_squares, nonnegative_residual, short_svd
+from bemcontact.arrays import freeze_arrays, least_squares, nonnegative_residual, short_svd
 
 
 def of_whole_numbers(rng, k, n):
@@ -83,3 +85,16 @@ def test_least_squares_are_the_shortest_ones():
         alike = np.outer(columns.sum(axis=1), np.ones(k))
         for matrix in (columns, alike, 0 * columns):
             np.testing.assert_allclose(least_squares(matrix, right), np.linalg.pinv(matrix) @ right, rtol=0, atol=1e-13)
+
+
+def test_nobody_can_write_to_frozen_arrays():
+    """Copied are arrays that somebody may write to, also by what they are views of; others are shared."""
+    mine, own = np.zeros(3), np.zeros(3)
+    view = mine[:2]
+    view.setflags(write=False)
+    own.setflags(write=False)
+    holder = SimpleNamespace(mine=mine, view=view, own=own)
+    freeze_arrays(holder)
+    mine[:] = 1.0
+    assert not any(array.any() or array.flags.writeable for array in vars(holder).values())
+    assert holder.own is own

@@ -1,12 +1,12 @@
 """A problem on its mesh, before it is condensed: loadings, contact points, and the motions that contact holds."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from bemcontact.arrays import Array, indices
+from bemcontact.arrays import Array, BoolArray, indices
 from bemcontact.bem.bonds import BondedPoints
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.free_motions import UNSEEN, FreeMotions, PlacedTools, steps_of_surfaces
@@ -17,6 +17,7 @@ from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.contact.free_motions import MotionAlgebra
 from bemcontact.contact.load_cases import BALANCED, Pinned
+from bemcontact.problems.bodies import Part
 from bemcontact.problems.body_surface import BodyZone
 from bemcontact.problems.material import Material
 from bemcontact.problems.problem import Problem
@@ -190,10 +191,15 @@ class Body:
         """Work (k, 1 + c) of each loading in the seen motions, as of `motion_load`."""
         return self.motion_load(self.seen)
 
+    @cached_property
+    def with_bodies(self) -> BoolArray:
+        """Whether an elastic body takes part in each of the seen motions (k,)."""
+        return np.asarray(self.seen.of_bodies.any(axis=1))
+
     @property
     def algebra(self) -> MotionAlgebra:
         """The seen motions that elastic bodies take part in."""
-        own = np.any(self.seen.of_bodies, axis=1)
+        own = self.with_bodies
         return MotionAlgebra(
             rigid_motions=self.seen_motion[:, own], weights=self.points.tributary, motion_load=self.seen_load[own]
         )
@@ -209,17 +215,16 @@ class Body:
     @property
     def notes(self) -> tuple[str, ...]:
         """Decisions that a user should know."""
-        ways = self.pinned_motions.describe()
+        ways, parts = self.pinned_motions.describe(), self.problem.parts
         at_zero = [f"the {way} moves no contact point and has no load: it is held at zero" for way in ways]
         if len(ways) > MANY:
             at_zero = [f"these move no contact point and have no load, and are held at zero: the {', the '.join(ways)}"]
-        materials = [part.material for part in self.problem.parts]
         stated = dict.fromkeys(
             doubt
-            for material in materials
-            for doubt in self.problem.units.doubts(material.young_modulus, material.poisson_ratio)
+            for part in parts
+            for doubt in self.problem.units.doubts(part.material.young_modulus, part.material.poisson_ratio)
         )
-        return (*_left_out(self.problem), *_mixed_states(self.problem), *self._wedges(), *at_zero, *stated)
+        return (*_left_out(self.problem), *_mixed_states(parts), *self._wedges(), *at_zero, *stated)
 
     def _wedges(self) -> Iterator[str]:
         """Note contact points that conditions hold nearly along the rigid normal, and that slide into a wedge.
@@ -227,7 +232,10 @@ class Body:
         Opposite to another elastic body pressure is bounded, for that one gives way.
         """
         points = self.points
-        free = np.where(self.loadings[0].values.displacement_given[points.node], 0.0, points.normals)
+        given = self.loadings[0].values.displacement_given[points.node]
+        if not given.any():
+            return
+        free = np.where(given, 0.0, points.normals)
         part = np.hypot(*free.T)
         for i in indices((part < WEDGE) & (points.opposite.node < 0)).tolist():
             x, y = self.mesh.nodes[points.node[i]].tolist()
@@ -239,10 +247,10 @@ class Body:
             )
 
 
-def _mixed_states(problem: Problem) -> Iterator[str]:
+def _mixed_states(parts: Sequence[Part]) -> Iterator[str]:
     """Note bodies in plane stress beside others in plane strain."""
     states: dict[str, list[str]] = {}
-    for part in problem.parts:
+    for part in parts:
         states.setdefault(part.material.state.replace("_", " "), []).append(f"'{part.name}'")
     if len(states) > 1:
         which = ", and ".join(f"{', '.join(names)} in {state}" for state, names in states.items())
@@ -256,9 +264,9 @@ def _mixed_states(problem: Problem) -> Iterator[str]:
 def _left_out(problem: Problem) -> Iterator[str]:
     """Note edges with conditions that can see the surface of a zone that names no edges."""
     for name, zone in problem.zones.items():
-        touching = problem.edges_of(name)
-        if isinstance(zone, BodyZone):
+        if isinstance(zone, BodyZone) or zone.edges is not None:
             continue
+        touching = problem.edges_of(name)
         others = [edge for edge in zone_edges(problem.edges, zone, ()) if edge not in touching]
         if others:
             names, it = ", ".join(f"'{edge}'" for edge in others), "it has" if len(others) == 1 else "they have"

@@ -10,7 +10,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from bemcontact.arrays import Array, IntArray, magnitudes, successive
+from bemcontact.arrays import Array, IntArray, magnitudes, scalar_products, successive
 from bemcontact.bem.body import Body
 from bemcontact.bem.bonds import Bond, eliminate
 from bemcontact.bem.boundary_values import BoundaryState
@@ -191,9 +191,11 @@ def matrix_of(body: Body) -> tuple[object, ...]:
 
 def _notes(body: Body, parts: Sequence[CondensedPart]) -> tuple[str, ...]:
     """Decisions that a user should know."""
-    names, reused = [part.name for part in body.problem.parts], list[str]()
-    for number in range(len(parts)):
-        if others := [name for name, part in zip(names, parts, strict=True) if part.like == number][1:]:
+    reused = list[str]()
+    if shared := sorted({part.like for number, part in enumerate(parts) if part.like != number}):
+        names = [part.name for part in body.problem.parts]
+        for number in shared:
+            others = [name for name, part in zip(names, parts, strict=True) if part.like == number][1:]
             listed = ", ".join(f"'{name}'" for name in others)
             reused.append(f"the condensation of the body '{names[number]}' is reused for {listed}, of equal mesh")
     return (*body.notes, *reused, *dict.fromkeys(note for part in parts for note in part.system.notes))
@@ -201,7 +203,7 @@ def _notes(body: Body, parts: Sequence[CondensedPart]) -> tuple[str, ...]:
 
 def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
     """The condensed bodies, from the responses to their loadings and unit pressures."""
-    points, tools, s, bond = body.points, body.tools, len(body.loadings), None
+    points, tools, cases, bond = body.points, body.tools, tuple(body.problem.load_cases), None
     compliance, free_displacement = observed(body, parts)
     if len(body.bonds):
         compliance, free_displacement, bond = eliminate(
@@ -214,9 +216,8 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
             len(points),
         )
     R, load = body.seen_motion, body.seen_load
-    own = np.any(body.seen.of_bodies, axis=1)
+    (n, k), t = R.shape, len(tools.names)
     gauge = fix_gauge(body.algebra, compliance=compliance, free_displacement=free_displacement)
-    on_body = np.where(own[:, None], load, 0.0)
     contact = CondensedContact(
         name=body.problem.name,
         zone_names=tuple(body.problem.zones),
@@ -234,7 +235,7 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
         free_displacement=gauge.free_displacement[:, 0],
         rigid_motions=R,
         motion_load=load[:, 0],
-        initial_gap=points.gap + tools.motions @ tools.position[:, 0],
+        initial_gap=points.gap + tools.motions @ tools.position[:, 0] if t else points.gap,
         weights=points.tributary,
         zone_weights=points.tributary_by_zone(len(body.problem.zones)),
         consistent_weights=points.consistent,
@@ -249,16 +250,20 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
             free=tools.free,
             position=tools.position[:, 0],
             force=tools.force[:, 0],
-        ),
+        )
+        if t
+        else Tools.none(n, k),
         pinned=body.pinned,
         cases=LoadCases(
-            names=tuple(body.problem.load_cases),
+            names=cases,
             displacement=gauge.free_displacement[:, 1:],
-            motion_load=on_body[:, 1:],
+            motion_load=np.where(body.with_bodies[:, None], load, 0.0)[:, 1:],
             position=tools.position[:, 1:],
             force=tools.force[:, 1:],
-            factors=np.zeros(s - 1),
-        ),
+            factors=np.zeros(len(cases)),
+        )
+        if cases
+        else LoadCases.none(n, k, t),
     )
     return Condensation(body=body, parts=parts, contact=contact, gauge=gauge, bond=bond).acting()
 
@@ -285,9 +290,10 @@ def _observe(part: CondensedPart, compliance: Array, free_displacement: Array) -
         seen = (column >= 0) & (change != 0)
         free = slice(None) if seen.all() else np.flatnonzero(seen)
         result[:, free] += change[free] * response.rows(column[free]).T
-    given = [np.sum(points.change * item.values.displacement[points.node], axis=1) for item in system.loadings]
     moved, added = result[:s].T * system.length, result[s:].T * (system.length / system.stress)
-    moved += np.array(given).T
+    for own, item in zip(moved.T, system.loadings, strict=True):
+        if item.values.displacement.any():
+            own += scalar_products(points.change, item.values.displacement[points.node])
     gaps, numbers = successive(points.gap), successive(points.number)
     if isinstance(gaps, slice) and isinstance(numbers, slice):
         free_displacement[gaps] += moved

@@ -218,7 +218,9 @@ class ContactPoints:
         that has a point at this node too.
         """
         zones = self.zone[self.point]
-        has = np.zeros((max(self.zone, default=0) + 1, len(self.mesh.elements), 3), bool)
+        if not self.zone.any():
+            return zones
+        has = np.zeros((self.zone.max() + 1, len(self.mesh.elements), 3), bool)
         has[zones, self.element, self.local] = True
         middle = has[:, self.element, 1]
         other = middle.argmax(axis=0)
@@ -227,10 +229,9 @@ class ContactPoints:
 
     def tributary_by_zone(self, zones: int) -> Array:
         """(zones, n) [L]: the parts of the tributary lengths in each zone, negative with the sides exchanged."""
-        lengths = np.zeros((zones, len(self)))
         signed = self.sense * self.mesh.tributary[self.element, self.local]
-        np.add.at(lengths, (self.zone_of_share, self.point), signed)
-        return lengths
+        place = self.zone_of_share * len(self) + self.point
+        return np.bincount(place, signed, zones * len(self)).astype(float).reshape(zones, -1)
 
     @cached_property
     def tributary(self) -> Array:
@@ -246,20 +247,21 @@ class ContactPoints:
     @cached_property
     def consistent(self) -> Array:
         """(n, n) [L]: Σ over elements of ∫ h hᵀ |dx/dξ| dξ, [SS92] (24)-(25)."""
-        one_more, xi = len(self) + 1, reference_element.gauss_legendre(CONSISTENT_ORDER)[0]
-        owner = np.full((max(self.zone, default=0) + 1, len(self.mesh.elements), 3), len(self))  # else one too many
+        one_more, (slopes, products) = len(self) + 1, _consistent_rule()
+        owner = np.full((self.zone.max(initial=0) + 1, len(self.mesh.elements), 3), len(self))  # else one too many
         owner[self.zone_of_share, self.element, self.local] = self.point
         of_zone, element = np.nonzero((owner < len(self)).any(axis=2))
         i = owner[of_zone, element]
-        local = magnitudes(self.mesh.tangents_at(xi)[element]) @ _products_of_shapes()
+        nodes = self.mesh.nodes[self.mesh.elements[element]]
+        local = magnitudes(slopes @ (nodes - nodes[:, 1:2])) @ products
         place = i[:, :, None] * one_more + i[:, None]
         sums = np.bincount(place.ravel(), local.ravel(), one_more**2).astype(float)
         return sums.reshape(one_more, -1)[:-1, :-1]
 
 
 @lru_cache(maxsize=1)
-def _products_of_shapes() -> Array:
-    """N_k N_l times the weights of Gauss points (q, 9) for the consistent weights."""
+def _consistent_rule() -> tuple[Array, Array]:
+    """For the consistent weights, at Gauss points: dN_k/dξ (q, 3), and N_k N_l times the weights (q, 9)."""
     xi, weights = reference_element.gauss_legendre(CONSISTENT_ORDER)
     N = reference_element.values(xi)
-    return (N[:, :, None] * N[:, None] * weights[:, None, None]).reshape(-1, 9)
+    return reference_element.derivatives(xi), (N[:, :, None] * N[:, None] * weights[:, None, None]).reshape(-1, 9)

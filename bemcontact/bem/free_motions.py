@@ -187,8 +187,11 @@ class FreeMotions:
 
     def _whole(self, motion: int) -> str:
         """Describe a motion, with what moves unless it is an only body."""
-        way, who = self.way(motion), self.who(motion)
-        return way if who == BODY or len(self._ways(motion)) > 1 else f"{way} of {who}"
+        way, moving = self.way(motion), self._moving(motion)
+        if len(moving) > 1 and len(self._ways(motion)) > 1:
+            return way
+        who = self._together(moving)
+        return way if who == BODY else f"{way} of {who}"
 
     def who(self, motion: int) -> str:
         """Name what moves: the body, tools, or several of them together."""
@@ -272,8 +275,8 @@ class FreeMotions:
 
     def _moving(self, motion: int) -> list[int]:
         """Bodies and tools that move in one of them."""
-        size = abs(self.coefficients[motion]).max()
-        return [part for part in range(len(self.centers)) if abs(self._of(motion, part)).max() > UNSEEN * size]
+        sizes = abs(self.coefficients[motion]).reshape(-1, 3).max(axis=1)
+        return np.flatnonzero(sizes > UNSEEN * sizes.max()).tolist()
 
 
 def free_motions(

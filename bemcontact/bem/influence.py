@@ -15,6 +15,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray, successive
 from bemcontact.bem import kernels, reference_element
@@ -28,6 +29,8 @@ LARGEST_BLOCK = 400_000
 """Pairs of one block of rows: bounds its memory to about 100 MB."""
 CACHE_SIZE = 24_000
 """Kernel evaluations at a time: about ten arrays of them stay in the second-level cache."""
+WORTH_A_RULE = 1_700
+"""Kernel evaluations that take as long as the steps of one more rule."""
 SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which the elements that are far from a block of points share a rule."""
 
@@ -194,9 +197,9 @@ class Influence:
         origin = collocation.base[rows.start]  # the digits of short elements are in differences to nodes of their own
         z = (collocation.base[rows] - origin) + collocation.offset[rows]
         nodes = self.element_nodes - origin
-        tiers, far = self._far_tiers(z, nodes)
-        block = self._far(rows, z, nodes, np.where(far, tiers, -1), space)
-        self._near(block, collocation, np.flatnonzero(~far))
+        tiers = self._far_tiers(z, nodes)
+        block = self._far(rows, z, nodes, tiers, space)
+        self._near(block, collocation, np.flatnonzero(tiers < 0))
         self._turn_corners(block, collocation)
         return block
 
@@ -207,8 +210,8 @@ class Influence:
         for first, last in itertools.pairwise([0, *ends.tolist(), len(kind)]):
             yield slice(first, last)
 
-    def _far_tiers(self, z: ComplexArray, nodes: ComplexArray) -> tuple[IntArray, BoolArray]:
-        """The rule (m,) that each element may share for all points of a block, and whether it is far from the block."""
+    def _far_tiers(self, z: ComplexArray, nodes: ComplexArray) -> IntArray:
+        """The rule (m,) that each element far from a block shares for all of its points; -1 for others."""
         # |z - c0| = |c1 r + c2 r²| bounds |r| from below, and ρ >= |r| + sqrt(|r|² - 1)
         c0, c1, c2 = kernels.element_coefficients(nodes)
         middle, radius = disc(z)
@@ -216,10 +219,12 @@ class Influence:
         distance = np.maximum(abs(c0 - middle) - radius, 0)
         r = 2 * distance / (c1 + np.sqrt(c1**2 + 4 * c2 * distance))
         rho = np.where(r > 1, r + np.sqrt(np.maximum(r * r - 1, 0)), 1.0)
-        tiers = np.where(
-            self._slot >= 0, reference_element.tier(rho), reference_element.tier(rho, reference_element.RHO_OF_T)
-        )
-        return tiers, (rho > SHARED_RULE_RHO) & (radius <= RATIO * (abs(c0 - middle) - c1 - c2))
+        far = np.flatnonzero((rho > SHARED_RULE_RHO) & (radius <= RATIO * (abs(c0 - middle) - c1 - c2)))
+        tiers, rho = np.full(len(nodes), -1), rho[far]
+        if len(far):
+            of_tractions = reference_element.tier(rho, reference_element.RHO_OF_T)
+            tiers[far] = np.where(self._slot[far] >= 0, reference_element.tier(rho), of_tractions)
+        return tiers
 
     def _far(self, rows: slice, z: ComplexArray, nodes: ComplexArray, tiers: IntArray, space: _Space) -> InfluenceRows:
         """A block with the influence of far elements on its points, by one Gauss rule each; tier -1 leaves one out."""
@@ -264,25 +269,25 @@ class Influence:
 
     def _near(self, block: InfluenceRows, collocation: Collocation, element: IntArray) -> None:
         """Every point of the block with some elements, each pair by the rule for its own root."""
-        base, offset = collocation.base[block.rows], collocation.offset[block.rows]
-        tau = ((self.element_nodes[element, None] - base[:, None]) - offset[:, None]).reshape(-1, 3)
-        root = kernels.nearest_root(tau)
-        tiers = reference_element.tier(reference_element.bernstein_parameter(root.r))
+        pairs = self._pairs(collocation, block.rows, element)
+        tiers = self._near_tiers(pairs, element)
         on_element, on = self._on_elements(block, collocation, element)
         tiers[on_element] = -1
         near = np.flatnonzero(tiers == len(reference_element.ORDERS))
         tiers[near] = -1
-        beside = kernels.beside_element(tau[near], kernels.Root(*(part[near] for part in root)))
-        singular = np.append(on_element, near)
+        tau = (pairs[:, 0, near] + 1j * pairs[:, 1, near]).T
+        beside = kernels.beside_element(tau, kernels.nearest_root(tau))
+        singular = np.concatenate([on_element, near])
         order = np.argsort(tiers, kind="stable")  # so that the pairs of a rule follow each other
         order[: len(singular)] = singular
-        ends = np.searchsorted(tiers[order], np.arange(-1, len(reference_element.ORDERS)), side="right").tolist()
-        nodes = np.ascontiguousarray(tau.view(float).reshape(-1, 3, 2)[order].transpose(1, 2, 0))
+        ends = np.bincount(tiers + 1, minlength=len(reference_element.ORDERS) + 1).cumsum().tolist()
+        nodes = pairs.take(order, axis=2)
         parts = [kernels.components(kernels.with_root_split_off(on.and_those(beside)), self.factors)]
         for rule, (first, last) in zip(self._rules, itertools.pairwise(ends), strict=True):
             if last > first:
                 parts.append(kernels.regular(kernels.numerators(nodes[..., first:last], rule), rule, with_U=True))
-        place, shape = np.argsort(order), (len(element), len(base))
+        place, shape = np.empty_like(order), (len(element), -1)
+        place[order] = np.arange(len(order))
         T, U = (np.concatenate(part, axis=2).take(place, axis=2) for part in zip(*parts, strict=True))
         T, U = T.reshape(4, 3, *shape), U.reshape(3, 3, *shape)
         self._add_to_rows(block, element, T)
@@ -291,6 +296,20 @@ class Influence:
         block.G[:, :, column[wanted]] = U[:, :, wanted]
         if known.any():
             np.add(block.known, _sums(known, U), out=block.known)
+
+    def _pairs(self, collocation: Collocation, rows: slice, element: IntArray) -> Array:
+        """τ = ζ - z (3, 2, e R) at the nodes of elements, for each of them and each point; real and imaginary parts."""
+        base, offset = (_real_parts(z[rows])[:, None] for z in (collocation.base, collocation.offset))
+        nodes = _real_parts(self.element_nodes[element].T)[:, :, :, None]
+        return ((nodes - base[:, None]) - offset[:, None]).transpose(1, 0, 2, 3).reshape(3, 2, -1)
+
+    def _near_tiers(self, pairs: Array, element: IntArray) -> NDArray[np.int8]:
+        """The rule for the root of each pair; where a rule has few of them, a larger one that others need."""
+        _, c1, c2 = (part[element, None] for part in kernels.element_coefficients(self.element_nodes))
+        middle = (pairs[1, 0] + 1j * pairs[1, 1]).reshape(len(element), -1)
+        rho = reference_element.bernstein_parameter(kernels.root_from_middle(middle, c1, c2))
+        tiers = reference_element.tier(rho.ravel())
+        return _shared_rules(np.bincount(tiers, minlength=len(reference_element.ORDERS) + 1))[tiers]
 
     def _on_elements(
         self, block: InfluenceRows, collocation: Collocation, element: IntArray
@@ -314,8 +333,9 @@ class Influence:
         """The free term at nodes between two elements: -i times the interior angle."""
         corner = collocation.corner[block.rows]
         row = np.flatnonzero(corner >= 0)
-        for diagonal in range(2):
-            block.F[diagonal, corner[row], row] += self.factors.normal * -self.inner_angles[corner[row]]
+        at, turn = corner[row], self.factors.normal * -self.inner_angles[corner[row]]
+        block.F[0, at, row] += turn
+        block.F[1, at, row] += turn
 
 
 def _places(of: IntArray, count: int) -> IntArray:
@@ -323,6 +343,24 @@ def _places(of: IntArray, count: int) -> IntArray:
     places = np.full(count, -1)
     places[of] = np.arange(len(of))
     return places
+
+
+def _shared_rules(pairs: IntArray) -> NDArray[np.int8]:
+    """The rule that the pairs (r + 1,) of each rule, and the last ones of none, take; of a type that is sorted fast."""
+    orders, taken, few, waiting = reference_element.ORDERS, np.arange(len(pairs), dtype=np.int8), list[int](), 0
+    needed = np.flatnonzero(pairs[:-1]).tolist()
+    for rule, larger in itertools.zip_longest(needed, needed[1:]):
+        few.append(rule)
+        waiting += int(pairs[rule])
+        if larger is None or waiting * (orders[larger] - orders[rule]) >= WORTH_A_RULE:
+            taken[few] = rule
+            few, waiting = [], 0
+    return taken
+
+
+def _real_parts(z: ComplexArray) -> Array:
+    """Real and imaginary parts (2, …) of complex numbers."""
+    return np.stack([z.real, z.imag])
 
 
 def _sums(traction: Array, U: Array) -> Array:

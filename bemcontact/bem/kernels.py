@@ -27,17 +27,18 @@ from bemcontact.bem.reference_element import (
     INTEGRALS,
     MONOMIALS,
     NODES,
+    ORDERS,
     bernstein_parameter,
     derivatives,
     gauss_legendre,
+    tier,
     values,
 )
 
 SMOOTH_ORDER = 24
-"""Gauss points for the smooth remainder after the near root has been split off."""
-
-SMOOTH_RHO = 2.0
-"""Bernstein parameter that the second root needs for the remainder: 2^-48 < 1e-14."""
+"""A quarter of the Gauss points beside a second root, for the smooth remainder after the nearest one was split off."""
+FAR_ROOT = 100.0
+"""Distance from which the second root counts as far away."""
 
 
 class Integrals(NamedTuple):
@@ -231,6 +232,13 @@ def nearest_root(tau: ComplexArray) -> Root:
     return Root(start + step, (start - 1) + step, (start + 1) + step)
 
 
+def root_from_middle(at_middle: ComplexArray, c1: ComplexArray, c2: ComplexArray) -> ComplexArray:
+    """The root of τ = at_middle + c1 ξ + c2 ξ² nearest to the middle; digits are lost near the ends of an element."""
+    root = np.sqrt(c1 * c1 - 4 * c2 * at_middle)
+    root = np.where((c1.conj() * root).real < 0, -root, root)
+    return -2 * at_middle / (c1 + root)
+
+
 class Singular(NamedTuple):
     """Pairs (p, …) whose root is split off.
 
@@ -286,8 +294,7 @@ def with_root_split_off(pairs: Singular) -> Integrals:
     _, c1, c2 = element_coefficients(nodes)
     r = root.r
     d = c1 + c2 * r
-    order = SMOOTH_ORDER if _second_root_is_far(c1, c2, r) else 4 * SMOOTH_ORDER
-    xi, weights = gauss_legendre(order)
+    xi, weights = gauss_legendre(_order_beside(c1, c2, r))
     powers = np.stack([np.ones_like(xi), xi, xi * xi])
     smooth = c2[:, None] * xi + d[:, None]
 
@@ -304,10 +311,12 @@ def with_root_split_off(pairs: Singular) -> Integrals:
     return Integrals(A, B, L, moments @ MONOMIALS.T)
 
 
-def _second_root_is_far(c1: ComplexArray, c2: ComplexArray, r: ComplexArray) -> bool:
-    curved = abs(c2) > 1e-3 * abs(c1)
+def _order_beside(c1: ComplexArray, c2: ComplexArray, r: ComplexArray) -> int:
+    """Gauss points for the smooth remainder: few where the second roots, of curved elements, are far."""
+    curved = abs(c2) > abs(c1) / FAR_ROOT
     second = -c1[curved] / c2[curved] - r[curved]
-    return bool((bernstein_parameter(second) > SMOOTH_RHO).all())
+    rho = bernstein_parameter(second).min(initial=FAR_ROOT)
+    return int(np.append(ORDERS, 4 * SMOOTH_ORDER)[tier(rho)])
 
 
 def _turn_moments(

@@ -188,7 +188,9 @@ class Loading:
         return self.true_forces.sum(axis=0)
 
     def of_part(self, part: MeshPart) -> "Loading":
-        """The loading of one body on its own mesh, without resultants."""
+        """The loading of one body on its own mesh; without resultants unless it is the only body."""
+        if part.whole:
+            return self
         particular = self.particular
         return Loading(
             values=self.values.of_part(part),

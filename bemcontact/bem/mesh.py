@@ -149,10 +149,9 @@ class Mesh:
     @cached_property
     def centroid(self) -> Array:
         """Mean (2,) of the boundary [L]. It turns with the body, as the middle of a bounding box does not."""
-        first = self.nodes[0]
-        return first + np.average(
-            self.nodes[self.elements] - first, axis=(0, 1), weights=np.repeat(self.tributary[..., None], 2, axis=2)
-        )
+        first, weights = self.nodes[0], np.repeat(self.tributary[..., None], 2, axis=2)
+        moments = (self.nodes[self.elements] - first) * weights
+        return first + moments.sum(axis=(0, 1)) / weights.sum(axis=(0, 1))
 
     @cached_property
     def reference_length(self) -> float:
@@ -224,6 +223,11 @@ class MeshPart(NamedTuple):
     mesh: Mesh
     elements: slice
     nodes: slice | IntArray
+
+    @property
+    def whole(self) -> bool:
+        """Whether this is the whole mesh."""
+        return self.elements == slice(None)
 
 
 def build(problem: Problem) -> Mesh:

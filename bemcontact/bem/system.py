@@ -122,35 +122,35 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Syst
     the element after instead.
     """
     m, before = len(mesh.elements), mesh.before
-    element = np.arange(m)
-    ends, starts = unknowns.traction[before, 2], unknowns.traction[element, 0]
+    ends, starts = unknowns.traction[before, 2], unknowns.traction[:, 0]
     double = (ends >= 0) & (starts >= 0) & (ends != starts)  # (m, 2), at the start node of each element
-
+    split = np.flatnonzero(double.any(axis=1))
     wanted: BoolArray = np.ones((2 * m, 2), bool)
     wanted[:m] = ~double
-    along = np.arange(2 * m).reshape(2, m).T.ravel()  # along the boundary, as blocks of rows want it
-    at_nodes = along[np.any(wanted, axis=1)[along]]
-    split = np.flatnonzero(double.any(axis=1))
-    on_split = np.column_stack([before[split], split]).ravel()
-    local_split = np.tile([OFFSET, -OFFSET], len(split))
-    shapes = reference_element.values(local_split)
-    base = np.repeat(nodes[split], 2)
-    offset = np.sum(shapes * (nodes[mesh.elements[on_split]] - base[:, None]), axis=1)
-
-    is_corner = at_nodes < m
-    corner = np.where(is_corner, at_nodes, -1)
-    number = np.arange(len(at_nodes))
-    collocation = Collocation(
-        base=np.concatenate([nodes[at_nodes], base]),
-        offset=np.concatenate([np.zeros(len(at_nodes), complex), offset]),
-        on_point=np.concatenate([number, number[is_corner], len(at_nodes) + np.arange(2 * len(split))]),
-        on_element=np.concatenate([at_nodes % m, before[at_nodes[is_corner]], on_split]),
-        on_local=np.concatenate([np.where(is_corner, -1.0, 0.0), np.ones(is_corner.sum()), local_split]),
-        corner=np.concatenate([corner, np.full(2 * len(split), -1)]),
-    )
-    active = np.concatenate([wanted[at_nodes], np.repeat(double[split], 2, axis=0)])
+    at_nodes = np.arange(2 * m).reshape(2, m).T.ravel()  # along the boundary, as blocks of rows want it
+    if len(split):
+        at_nodes = at_nodes[np.any(wanted, axis=1)[at_nodes]]
+    count, is_corner = len(at_nodes), at_nodes < m
+    number, corner = np.arange(count), np.where(is_corner, at_nodes, -1)
+    points = [(nodes[at_nodes], np.zeros(count, complex), corner, wanted[at_nodes])]
+    places = [
+        (number, at_nodes % m, np.where(is_corner, -1.0, 0.0)),
+        (number[is_corner], before[at_nodes[is_corner]], np.ones(np.count_nonzero(is_corner))),
+    ]
+    if len(split):
+        inside = np.column_stack([before[split], split]).ravel()
+        local = np.tile([OFFSET, -OFFSET], len(split))
+        base = np.repeat(nodes[split], 2)
+        offset = np.sum(reference_element.values(local) * (nodes[mesh.elements[inside]] - base[:, None]), axis=1)
+        points.append((base, offset, np.full(len(inside), -1), np.repeat(double[split], 2, axis=0)))
+        places.append((count + np.arange(len(inside)), inside, local))
+    base, offset, corner, active = (np.concatenate(part) for part in zip(*points, strict=True))
+    on_point, on_element, on_local = (np.concatenate(part) for part in zip(*places, strict=True))
     row = np.full(active.shape, -1)
     row.T[active.T] = np.arange(np.count_nonzero(active))
+    collocation = Collocation(
+        base=base, offset=offset, on_point=on_point, on_element=on_element, on_local=on_local, corner=corner
+    )
     return SystemEquations(collocation=collocation, row=row)
 
 
@@ -217,7 +217,7 @@ class System:
         """The integrals, with columns of G for unknown tractions and pressures and the sum for known ones."""
         needed: BoolArray = np.any(self.unknowns.traction >= 0, axis=(1, 2))
         needed[self.points.element] = True
-        needed |= self.values.stiffness.any(axis=(1, 2, 3))
+        needed[self._sprung] = True
         jacobians = self.mesh.jacobians / self.length
         return Influence(
             mesh=self.mesh,
@@ -270,12 +270,11 @@ class System:
 
         Springs add to it at nodes with prescribed displacement.
         """
-        mesh, springs = self.mesh, self.values.spring_traction
-        known = [
-            item.values.traction + springs(item.values.displacement[mesh.elements]) - item.particular.traction
-            for item in self.loadings
-        ]
-        return np.stack(known) / self.stress
+        known = np.stack([item.values.traction - item.particular.traction for item in self.loadings])
+        if len(self._sprung):
+            at_nodes = [item.values.displacement[self.mesh.elements] for item in self.loadings]
+            known += np.stack([*map(self.values.spring_traction, at_nodes)])
+        return known / self.stress
 
     @cached_property
     def _known_displacement(self) -> Array:
@@ -301,15 +300,23 @@ class System:
         return carried
 
     @cached_property
+    def _sprung(self) -> IntArray:
+        """Elements with springs, ascending."""
+        return np.flatnonzero(self.values.stiffness.any(axis=(1, 2, 3)))
+
+    @cached_property
     def _springs(self) -> tuple[IntArray, IntArray, IntArray, Array]:
         """Elements, local nodes and columns (q,) of displacements with springs, and minus the tractions (q, 2) by each.
 
         None of these displacements is prescribed.
         """
-        K = self.values.stiffness * (self.length / self.stress)
-        columns = self.unknowns.displacement[self.mesh.elements]
-        element, local, axis = np.nonzero(K.any(axis=2) & (columns >= 0))
-        return element, local, columns[element, local, axis], K[element, local, :, axis]
+        sprung = self._sprung
+        if not len(sprung):
+            return sprung, sprung, sprung, np.zeros((0, 2))
+        K = self.values.stiffness[sprung] * (self.length / self.stress)
+        columns = self.unknowns.displacement[self.mesh.elements[sprung]]
+        number, local, axis = np.nonzero(K.any(axis=2) & (columns >= 0))
+        return sprung[number], local, columns[number, local, axis], K[number, local, :, axis]
 
     @cached_property
     def _unit_displacements(self) -> list[_Carried]:
@@ -359,7 +366,7 @@ class System:
     def _left(self, F: Sequence[Array], G: Sequence[Array]) -> Iterator[Array]:
         """Columns of the unknowns: x displacements, y displacements, tractions."""
         first, springs = 0, None
-        if self.values.stiffness.any():
+        if len(self._sprung):
             x, y = self._unit_displacements
             springs = x.times(G[0]) + y.times(G[1])
         for part, column in zip(F, self.unknowns.displacement.T, strict=True):
@@ -456,7 +463,8 @@ class System:
             displacement, traction = loading.values.displacement.copy(), loading.values.traction.copy()
         sought = self.unknowns.displacement >= 0
         displacement[sought] = z[self.unknowns.displacement[sought]] * self.length
-        traction += self.values.spring_traction(displacement[self.mesh.elements])
+        if len(self._sprung):
+            traction += self.values.spring_traction(displacement[self.mesh.elements])
         sought = self.unknowns.traction >= 0
         traction[sought] = z[self.unknowns.traction[sought]] * self.stress
         return displacement, traction

@@ -228,6 +228,8 @@ class CondensedContact(WithHints, MotionAlgebra):
     def terms_of_offset(self) -> Array:
         """Sum of the magnitudes (n,) [L] of all that is added up in q: ε, Δ1, load cases and displacements of tools."""
         cases, tools = self.cases, self.tools
+        if not (len(cases) or len(tools)):
+            return abs(self.free_displacement) + abs(self.initial_gap)
         added, moved = cases.displacement * cases.factors, tools.motions * tools.position
         permanent = abs(self.free_displacement - added.sum(axis=1)) + abs(self.initial_gap - moved.sum(axis=1))
         return permanent + abs(added).sum(axis=1) + abs(moved).sum(axis=1)

@@ -61,9 +61,11 @@ def _ensure_computable(what: str, size: float) -> None:
 
 def _larger(displacement: float, offset: Array, terms: Array, rigid_motions: Array) -> float:
     """The larger of a displacement [L] and the interference, without a program where a motion shows which it is."""
+    if -offset.min(initial=0.0) <= displacement:  # without any motion
+        return displacement
     if rigid_motions.shape[1] > 1 and displacement > 0:
         fitted = offset - rigid_motions @ least_squares(rigid_motions, offset)
-        if min(-offset.min(initial=0.0), -fitted.min(initial=0.0)) <= displacement:
+        if -fitted.min(initial=0.0) <= displacement:
             return displacement
     return max(displacement, _interference(offset, terms, rigid_motions))
 

@@ -5,7 +5,7 @@ Their factors, displacements and forces enter the gap without contact, q = ε + 
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -62,6 +62,7 @@ class LoadCases:
         freeze_arrays(self)
 
     @classmethod
+    @lru_cache(maxsize=8)
     def none(cls, points: int, motions: int, tools: int) -> Self:
         """No case at all, for n contact points, k free motions and t tools."""
         of = partial(np.zeros, dtype=float)
@@ -116,6 +117,7 @@ class Tools:
         freeze_arrays(self)
 
     @classmethod
+    @lru_cache(maxsize=8)
     def none(cls, points: int, motions: int) -> Self:
         """No tool at all, for n contact points and k free motions."""
         return cls(

@@ -18,6 +18,8 @@ from bemcontact.errors import SingularSystemError
 from bemcontact.formulations.scaling import ScaledContact
 
 EPS = float(np.finfo(float).eps)
+ESTIMATED = 100.0
+"""Factor by which the estimate of a condition may be too small."""
 STEP_LIMIT = 100
 """Steps allowed beyond one for each point: on slender bodies contact recedes by a point or two in a step."""
 LEAST_SQUARES = 2
@@ -47,13 +49,11 @@ class ContactBlock:
     @cached_property
     def matrix(self) -> Array:
         """The matrix, with |A| + k rows and columns."""
-        A, k = self.points, self.scaled.rigid_motions.shape[1]
-        matrix = np.zeros((len(A) + k, len(A) + k))
-        matrix[: len(A), : len(A)] = self.scaled.compliance[A[:, None], A]
-        matrix[: len(A), len(A) :], matrix[len(A) :, : len(A)] = (
-            self.scaled.rigid_motions[A],
-            self.scaled.equilibrium[A].T,
-        )
+        A, R = self.points, self.scaled.rigid_motions
+        a, size = len(A), len(A) + R.shape[1]
+        matrix = np.zeros((size, size))
+        matrix[:a, :a] = self.scaled.compliance.take(A, axis=0).take(A, axis=1)
+        matrix[:a, a:], matrix[a:, :a] = R[A], self.scaled.equilibrium[A].T
         return matrix
 
     @cached_property
@@ -62,20 +62,27 @@ class ContactBlock:
         return self.scaled.compliance[:, self.points]
 
     @cached_property
-    def _units(self) -> Array:
-        """Powers of two near the sizes of the columns (|A| + k,): small tributary weights make no matrix singular."""
-        return powers_of_two(np.abs(self.matrix).max(axis=0))
-
-    @cached_property
     def _lu(self) -> LU:
-        """The factors of the matrix in these units; `SingularSystemError` if it is singular to working precision."""
-        lu = LU.of(self.matrix / self._units)
-        if lu.reciprocal_condition < len(self.matrix) * EPS:
+        """The factors of the matrix; `SingularSystemError` if it is singular to working precision."""
+        lu = LU.of(self.matrix)
+        if self._may_be_singular(lu) and self._equilibrated().reciprocal_condition < len(self.matrix) * EPS:
             raise SingularSystemError(
                 "the points in contact do not determine their pressures and the position of the body: the equations of "
                 "contact are singular"
             )
         return lu
+
+    def _may_be_singular(self, lu: LU) -> bool:
+        """Whether columns of similar size could be singular: their condition is 2 m times as large at most."""
+        m = len(self.matrix)
+        return lu.reciprocal_condition < ESTIMATED * 2 * m * m * EPS
+
+    def _equilibrated(self) -> LU:
+        """The factors with columns over powers of two near their sizes: small weights make no matrix singular.
+
+        Division by these changes no digit of the factors, and no pivot.
+        """
+        return LU.of(self.matrix / powers_of_two(np.abs(self.matrix).max(axis=0)))
 
     @property
     def regular(self) -> bool:
@@ -89,8 +96,7 @@ class ContactBlock:
         """Solve for right sides (|A| + k,) or (|A| + k, m), with one step of iterative refinement."""
         if not right.size:
             return right
-        units = self._units if right.ndim == 1 else self._units[:, None]
-        return self._lu.solve(right, lambda x: right - self.matrix @ (x / units)) / units
+        return self._lu.solve(right, lambda x: right - self.matrix @ x)
 
     def solve(self, *given: Change) -> tuple[Array, Array, Array]:
         """Solve for m offsets with their loads: p (m, n), zero off A, of either sign; δ (m, n), zero on A; a (m, k)."""
@@ -179,7 +185,7 @@ def solve_active_set(scaled: ScaledContact, active: BoolArray) -> tuple[Array, A
     refined: a light load must not drown in the rounding of gaps.
     """
     block = ContactBlock(scaled=scaled, points=np.flatnonzero(active))
-    right = -np.append(scaled.offset[block.points], scaled.motion_load)
+    right = -np.concatenate([scaled.offset[block.points], scaled.motion_load])
     try:
         unknowns = block.inverse(right)
     except SingularSystemError:

@@ -53,7 +53,7 @@ def solve(
     loose = loose_load(scaled)
     if _escapes(scaled, loose):
         return _without_contact(contact, escape_words(contact, loose))
-    carried = replace(scaled, motion_load=scaled.motion_load - loose)
+    carried = replace(scaled, motion_load=scaled.motion_load - loose) if loose.any() else scaled
     search = find_state(carried, options.max_iterations, near)
     if search.status is Status.INFEASIBLE:
         note = "Lemke's method ended on a ray, and multipliers prove that no pressure satisfies the conditions"
@@ -110,7 +110,7 @@ def escape_note(contact: CondensedContact) -> str | None:
 
 def _escapes(scaled: ScaledContact, loose: Array) -> bool:
     """Whether the part of the load that no pressure carries is more than round-off."""
-    return bool(np.linalg.norm(loose) > BALANCED * np.linalg.norm(scaled.motion_load))
+    return bool(loose.any() and np.linalg.norm(loose) > BALANCED * np.linalg.norm(scaled.motion_load))
 
 
 def escape_words(contact: CondensedContact, motion: Array) -> str:

@@ -16,7 +16,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.formulations.local_solver.factorizations import unit_rows
-from bemcontact.formulations.scaling import ACCEPTED, ScaledContact, scale, scaled_point, unscaled
+from bemcontact.formulations.scaling import ACCEPTED, ScaledContact, motion_sizes, scale, scaled_point, unscaled
 
 VANISHED = 1e-12
 """Fraction of the largest pressure below which a pressure is round-off, and holds no motion."""
@@ -34,15 +34,18 @@ def with_chosen_position(
     Points that do not solve the contact problem to round-off, and bodies that nothing touches, are left as they are.
     `closed` (n,) are points that must stay closed although nothing presses them.
     """
-    scaled = scale(contact)
-    p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
-    if not a.size or not contact.peak(solution.pressure) or not scaled.residual(p, a) <= ACCEPTED:
+    if not contact.free_motions or not contact.peak(solution.pressure):
         return solution
-    p = np.where(p > VANISHED * p.max(), p, 0.0)
-    held = p > 0 if closed is None else (p > 0) | closed
-    motions = _unseen(scaled, held)
+    p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
+    pressed = p > VANISHED * p.max()
+    held = pressed if closed is None else pressed | closed
+    motions = unseen_ways((contact.rigid_motions / motion_sizes(contact))[held], UNSEEN)
     if not motions.size:
         return solution
+    scaled = scale(contact)
+    if not scaled.residual(p, a) <= ACCEPTED:
+        return solution
+    p = np.where(pressed, p, 0.0)
     limits = _limits(scaled, held, scaled.gap(p, a), motions)
     if not (ways := _open_ways(limits, motions)).any():
         return solution
@@ -63,12 +66,6 @@ def note_of_open(motions: Iterable[str]) -> str:
         f"not determined: the {' and the '.join(motions)}; the position that is given has the least normal "
         "displacement of the contact points; state a load or a displacement that holds it, if it matters"
     )
-
-
-def _unseen(scaled: ScaledContact, held: BoolArray) -> Array:
-    """Basis (k, j) of the motions that no held point (n,) sees."""
-    pressed = scaled.rigid_motions[held]
-    return unseen_ways(pressed, UNSEEN)
 
 
 def _limits(scaled: ScaledContact, held: BoolArray, gap: Array, motions: Array) -> tuple[Array, Array]:

@@ -97,6 +97,16 @@ def test_point_on_an_element_is_the_limit_from_outside(element, local):
     assert abs(np.concatenate([on.T[..., 0], on.U[..., 0]]) - beside).max() < 1e-7
 
 
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_integrals_do_not_depend_on_those_of_other_pairs(element):
+    """Beside a strongly curved element, with its second root, all pairs take more Gauss points."""
+    both = np.array([ELEMENTS[element], ELEMENTS["skewed middle node"]])
+    pairs = [kernels.on_element(nodes, np.zeros(len(nodes))) for nodes in (both[:1], both)]
+    alone, first = map(kernels.with_root_split_off, pairs)
+    for one, other in zip(alone, first, strict=True):
+        assert abs(one[0] - other[0]).max() <= 1e-13
+
+
 def test_regular_rule_sums_kelvins_kernels():
     """U and T as printed in textbooks (Banerjee and Butterfield 1981), summed by the same rule, give the same."""
     nodes, z, nu = ELEMENTS["arc of 60 degrees"], 2.5 - 1.5j, 0.3

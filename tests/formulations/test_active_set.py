@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.formulations.active_set import first_active_set, primal_dual, resting_points, solve_active_set
+from bemcontact.formulations.active_set import (
+    ContactBlock,
+    first_active_set,
+    primal_dual,
+    resting_points,
+    solve_active_set,
+)
 from bemcontact.formulations.scaling import ScaledContact, scale
 
 
@@ -95,6 +101,21 @@ def test_small_weights_make_no_set_singular(power):
     (p, a), (of_small, same) = (solve_active_set(contact, np.ones(n, bool)) for contact in (whole, small))
     assert np.array_equal(of_small * units, p)
     assert np.array_equal(same, a)
+
+
+@pytest.mark.parametrize("power", [0, 20, 60])
+def test_units_of_pressures_do_not_decide_whether_a_set_is_singular(power):
+    """Two copies of a point among others, or none, with pressures in units that differ by powers of two."""
+    rng, n = np.random.default_rng(power), 6
+    B, units = rng.standard_normal((n, n)), 2.0 ** -np.linspace(0, power, n).astype(int)
+    definite = B @ B.T + np.eye(n)
+    double = definite[[0, 1, 2, 3, 4, 4]][:, [0, 1, 2, 3, 4, 4]]
+    for compliance, regular in ((definite, True), (double, False)):
+        scaled = ScaledContact(
+            compliance=compliance * units, offset=-np.ones(n), rigid_motions=np.zeros((n, 0)),
+            motion_load=np.zeros(0), weights=np.ones(n),
+        )  # fmt: skip
+        assert ContactBlock(scaled=scaled, points=np.arange(n)).regular == regular
 
 
 def test_first_set_of_a_free_body_is_laid_by_least_squares():
