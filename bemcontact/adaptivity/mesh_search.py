@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
@@ -52,6 +53,14 @@ class MeshSearch(MeshSizes):
     watch: Watch = field(default_factory=Watch)
     last: Solved | None = None
     """The answer on the mesh before, where the search for contact starts."""
+
+    @classmethod
+    def fitted_to(cls, problem: Problem, answer: Solved) -> Self:
+        """Begin with the ends of contact that an answer has, of the same outline with contacts at the same places."""
+        search = cls.of(problem)
+        ends, search.spots = search.ends_of_contact(answer)
+        search.layers, search.last = search.with_counts(ends), answer
+        return search
 
     def bisected(self, coarse: Solved) -> Solved:
         """Solve with every element of a mesh in two, under each load case."""
@@ -152,12 +161,15 @@ class MeshSearch(MeshSizes):
         return min(alike)[1] if alike else LAYERS
 
     def _resting(self, ends: Sequence[ContactEnd]) -> bool:
-        """Whether the ends of contact are within the first element of those that the mesh is fitted to."""
+        """Whether the ends of contact are within the first element of those that the mesh is fitted to.
+
+        More layers than `LAYERS` tell the end, and are not wrong if they are not fitted to it as closely.
+        """
         if len(ends) != len(self.layers):
             return False
         for end in ends:
-            near = [n for other, n in self.layers if self._same(end, other, end.width * (n / 1.5) ** -3)]
-            if not near:
+            first = [(other, end.width * (OUTSIDE / min(count, LAYERS)) ** 3) for other, count in self.layers]
+            if not any(self._same(end, other, length) for other, length in first):
                 return False
         return True
 

@@ -1,7 +1,8 @@
 """The sizes that a mesh is made from: those of the geometry, of stated elements, and those that a search adds."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from itertools import pairwise
 from typing import Self
 
@@ -19,6 +20,8 @@ MOST_UNKNOWNS = 4000
 """Largest number of unknowns of the finer mesh, of several bodies as `as_of_one` counts them."""
 UNKNOWNS = 4
 """Unknowns of an element: two displacements at each of two nodes, for the third is that of the next element."""
+LOOPS_KEPT = 16
+"""Loops whose first sizes and first elements are kept for other problems with the same ones."""
 
 
 def as_of_one(unknowns: Iterable[int]) -> int:
@@ -74,7 +77,7 @@ class MeshSizes:
                 if edge.elements is not None:
                     at = start + length * edge.breakpoints(problem.mesh.refine)
                     own += [Limit(low=low, high=high, size=high - low) for low, high in pairwise(at.tolist())]
-            limits.append(useful_limits(loop, own))
+            limits.append([*_first_limits(loop, tuple(own))])
             marks.append(ends)
         facing = facing_stretches(problem, shape.loops)
         joints = [loop.joints for loop in shape.loops]
@@ -110,18 +113,20 @@ class MeshSizes:
             limits[item.loop] += item.sizes_of_first(limits[item.onto])
         ends: dict[str, tuple[float, ...]] = {}
         for number in range(len(self.outline.loops)):
-            ends |= self._ends_on(number, limits[number])
+            ends.update(self._ends_on(number, limits[number]))
         for item in self.facing:
             loop = self.outline.loops[item.loop]
             limits[item.onto] += item.sizes_of_second(loop, ends[item.edge])
-            ends |= self._ends_on(item.onto, limits[item.onto])
+            ends.update(self._ends_on(item.onto, limits[item.onto]))
         return ends
 
-    def _ends_on(self, number: int, limits: Sequence[Limit]) -> dict[str, tuple[float, ...]]:
+    def _ends_on(self, number: int, limits: Sequence[Limit]) -> Mapping[str, tuple[float, ...]]:
         """The same on the edges of one loop."""
         own = [(end, count) for end, count in self.layers if end.loop == number]
         layers = [Layers(position=e.position, width=e.width, count=n, after=e.after) for e, n in own]
         marks = [*self.marks[number], *(end.position for end, _ in own)]
+        if not layers:
+            return _first_ends(self.outline.loops[number], self.growth, tuple(limits), tuple(marks))
         sized = replace(self.outline.loops[number], growth=self.growth)
         return sized.element_ends(np.array(limits), layers, marks)
 
@@ -137,6 +142,20 @@ def between_marks(loop: Loop, marks: Sequence[float]) -> Iterator[Limit]:
     apart = np.diff(places)
     for low, size in zip(places[:-1][apart > SAME * loop.length], apart[apart > SAME * loop.length], strict=True):
         yield Limit(low=float(low), high=float(low + size), size=float(size))
+
+
+@lru_cache(maxsize=LOOPS_KEPT)
+def _first_limits(loop: Loop, limits: tuple[Limit, ...]) -> tuple[Limit, ...]:
+    """`useful_limits` before a search, found once for problems that differ in loads, such as members of a study."""
+    return tuple(useful_limits(loop, limits))
+
+
+@lru_cache(maxsize=LOOPS_KEPT)
+def _first_ends(
+    loop: Loop, growth: float, limits: tuple[Limit, ...], marks: tuple[float, ...]
+) -> Mapping[str, tuple[float, ...]]:
+    """`Loop.element_ends` where no end of contact is known yet, found once for problems that differ in loads."""
+    return replace(loop, growth=growth).element_ends(np.array(limits), [], marks)
 
 
 def useful_limits(loop: Loop, limits: Sequence[Limit]) -> list[Limit]:

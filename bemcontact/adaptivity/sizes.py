@@ -86,7 +86,7 @@ class Loop:
         """Positions (k + 1,) where the k edges begin and end."""
         return np.concatenate([[0.0], np.cumsum([edge.length for edge in self.edges])])
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Length of all edges [L]."""
         return float(self.joints[-1])

@@ -2,7 +2,7 @@
 
 from bisect import bisect
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import islice, pairwise
 from math import dist
 from typing import ClassVar, Self
@@ -40,6 +40,8 @@ MOST_TRIED = 20
 """Number of arcs that are turned round to see whether that mends a boundary."""
 FARTHEST = 1e8
 """Largest coordinate or radius over the size of the body: eight digits are left for the shape."""
+BOXES_KEPT = 16
+"""Outlines whose bounding boxes are kept, for problems that have other loads."""
 
 
 class Boundary(SpecModel):
@@ -193,21 +195,22 @@ class Boundary(SpecModel):
     @cached_property
     def box(self) -> tuple[Pair, Pair]:
         """Least and largest coordinates [L]."""
-        return _box(self.edges)
+        return _box(tuple(self.edges))
 
 
 def size_of_edges(edges: Iterable[Edge]) -> float:
     """Diameter of the bounding box of edges [L]."""
-    return float(np.hypot(*np.ptp(_box(edges), axis=0)))
+    return float(np.hypot(*np.ptp(_box(tuple(edges)), axis=0)))
 
 
 def in_box(edges: Iterable[Edge], point: ArrayLike) -> bool:
     """Whether a point (2,) [L] is in the bounding box of edges."""
-    least, largest = np.array(_box(edges))
+    least, largest = np.array(_box(tuple(edges)))
     return bool(((least < point) & (point < largest)).all())
 
 
-def _box(edges: Iterable[Edge]) -> tuple[Pair, Pair]:
+@lru_cache(maxsize=BOXES_KEPT)
+def _box(edges: tuple[Edge, ...]) -> tuple[Pair, Pair]:
     """Least and largest coordinates of edges [L]; no array, so that boundaries can be compared."""
     points = np.vstack([edge.polyline() for edge in edges])
     (left, low), (right, high) = points.min(axis=0).tolist(), points.max(axis=0).tolist()

@@ -3,7 +3,9 @@
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from math import degrees, radians
+from typing import Any
 
 import numpy as np
 
@@ -33,6 +35,8 @@ ALONG = 0.5
 """Cosine of the angle between two normals above which they point the same way."""
 PIECE = 200
 """Number of points of an edge that are compared with a surface at the same time."""
+PAIRS_KEPT = 64
+"""Pairs of an edge and a surface of which the comparison is kept, for problems that have other loads."""
 
 
 def edge_name_issues(boundary: RawValue, conditions: Iterable[RawValue], zones: RawValue) -> list[Issue]:
@@ -256,7 +260,8 @@ def facing_issues(
         if isinstance(zone.surface, DeflectedContour):
             cosine, name = max((_outward(edge, zone.surface), edge.name) for edge in members)
         else:
-            _, cosine, name = min((*_facing(edge, zone.surface), edge.name) for edge in members)
+            shape: Any = zone.surface  # frozen, and so a key
+            _, cosine, name = min((*_facing(edge, shape), edge.name) for edge in members)
         if cosine > ALONG:
             issues.append(Issue(path=(*path, "surface"), message=_faces_away(name, zone.surface)))
         elif not any(_turned(edge, zone.surface) for edge in members):
@@ -302,11 +307,19 @@ def _nothing_sees(boundary: Sequence[Edge], zone: ContactZone) -> str:
 
 def _turned(edge: Edge, surface: RigidSurface) -> bool:
     """Whether some place of an edge is turned to a surface."""
+    if not isinstance(surface, DeflectedContour):
+        shape: Any = surface  # frozen, and so a key
+        return _turned_to_shape(edge, shape)
     fractions = np.linspace(0, 1, SAMPLES + 1)
-    if isinstance(surface, DeflectedContour):
-        normals = np.tile(surface.unit_direction, (len(fractions), 1))
-    else:
-        normals = surface.closest(edge.points(fractions)).normals
+    normals = np.tile(surface.unit_direction, (len(fractions), 1))
+    return bool(turned_to(-edge.normals(fractions), normals).any())
+
+
+@lru_cache(maxsize=PAIRS_KEPT)
+def _turned_to_shape(edge: Edge, surface: Shape) -> bool:
+    """Whether some place of an edge is turned to a surface that is drawn."""
+    fractions = np.linspace(0, 1, SAMPLES + 1)
+    normals = surface.closest(edge.points(fractions)).normals
     return bool(turned_to(-edge.normals(fractions), normals).any())
 
 
@@ -324,6 +337,7 @@ def _lengths(surface: RigidSurface) -> Iterator[float]:
             yield 0.0
 
 
+@lru_cache(maxsize=PAIRS_KEPT)
 def _facing(edge: Edge, surface: Shape) -> tuple[float, float]:
     """Least distance between edge and surface, and there the cosine between outward normal and surface normal."""
     fractions = np.linspace(0, 1, SAMPLES + 1)

@@ -32,7 +32,8 @@ from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.coarse_mesh import CoarseMesh
 from bemcontact.adaptivity.error_bars import error_bars, pressure_change
 from bemcontact.adaptivity.fields import MeshDifference, norm_squared, penetrations, solved
-from bemcontact.adaptivity.mesh_sizes import first_mesh
+from bemcontact.adaptivity.mesh_search import LAYERS, MeshSearch
+from bemcontact.adaptivity.mesh_sizes import ContactEnd, first_mesh
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations.active_set import first_active_set, primal_dual
@@ -803,3 +804,26 @@ def test_contact_that_reaches_a_little_around_a_fillet_is_found_at_once():
         peaks.append(result.accuracy.bar_of("peak", "c"))
     light, lighter = peaks[0].value / 0.1, peaks[1].value / 0.01
     assert lighter / light == pytest.approx(10 ** (1 / 3), rel=peaks[0].bar + peaks[1].bar)
+
+
+def test_a_search_that_begins_at_the_ends_of_an_answer_rests_there_at_once():
+    """The mesh that is fitted to ends that rest is the same again, and needs no other before it."""
+    stated, meshes = half_disk(2000.0).with_value("accuracy", 0.01), list[int]()
+    last = MeshSearch.of(stated).fitted(4000, meshes.append)
+    assert len(meshes) > 2
+    count = len(meshes)
+    again = MeshSearch.fitted_to(stated, last).fitted(4000, meshes.append)
+    assert len(meshes) == count + 1
+    assert again.degrees_of_freedom == last.degrees_of_freedom
+
+
+@pytest.mark.parametrize(
+    ("count", "moved", "rests"), [(1, 0.9, True), (1, 1.1, False), (2, 0.9, True), (2, 1.1, False), (0.5, 7.9, True)]
+)
+def test_ends_of_contact_rest_within_the_first_element_of_few_layers(count: float, moved: float, rests: bool):
+    """The first of n layers outside is w (1.5 / n)³ long; more than `LAYERS` tell the end, and need not know it."""
+    search = MeshSearch.of(half_disk(2000.0).with_value("accuracy", 0.01))
+    end = ContactEnd(loop=0, position=10.0, after=True, width=2.0)
+    search.layers = [(end, count * LAYERS)]
+    step = moved * end.width * (1.5 / LAYERS) ** 3
+    assert search._resting([replace(end, position=end.position + step)]) == rests

@@ -7,6 +7,7 @@ import pytest
 import several_bodies
 from several_bodies import elastic
 
+from bemcontact.adaptivity import mesh_sizes
 from bemcontact.adaptivity.first_sizes import sized_outline, surface_sizes
 from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.adaptivity.sizes import GROWTH
@@ -173,3 +174,29 @@ def _longest(stated: Problem, edge: str) -> float:
     """Longest element of an edge on the first mesh [L]."""
     found = next(item for item in first_mesh(stated).edges if item.name == edge)
     return float(np.diff(found.breakpoints(1)).max() * found.length)
+
+
+def test_the_first_elements_are_found_once_for_all_loads_and_anew_for_another_gap(monkeypatch: pytest.MonkeyPatch):
+    """What is kept is what is computed: with nothing kept the elements are the same."""
+    near = {"kind": "circle", "center": [4, -3], "radius": 3, "body": "outside"}
+    stated = [
+        block(10, 5, near),
+        block(10, 5, near).with_value("conditions.top.pressure", 7),
+        block(10, 5, {**near, "center": [4, -1], "radius": 1}),
+    ]
+    kept = [_ends(item) for item in stated]
+    found = []
+    original = mesh_sizes.Loop.element_ends
+    monkeypatch.setattr(mesh_sizes.Loop, "element_ends", lambda *given: found.append(given) or original(*given))
+    assert [_ends(item) for item in stated] == kept
+    assert not found
+    for function in (mesh_sizes._first_limits, mesh_sizes._first_ends):
+        function.cache_clear()
+    assert [_ends(item) for item in stated] == kept
+    assert len(found) == 2
+    assert kept[0] == kept[1] != kept[2]
+
+
+def _ends(stated: Problem) -> list[list[float]]:
+    """Element ends of all edges on the first mesh."""
+    return [item.breakpoints(1).tolist() for item in first_mesh(stated).edges]

@@ -3,6 +3,8 @@
 import pytest
 from messages import assert_each_states
 
+from bemcontact.errors import ProblemError
+from bemcontact.problems import Plane, Problem
 from bemcontact.problems.cross_checks import edge_name_issues
 from bemcontact.problems.key_path import RawValue
 
@@ -40,3 +42,23 @@ def test_contradictory_names_are_reported_without_a_boundary():
         "conditions.side: … 'side' … contact zone 'foot' … no condition",
     ]
     assert_each_states(issues(None, {"side": 1}, zones), facts)
+
+
+def test_an_edge_is_compared_with_a_surface_once_for_all_loads(monkeypatch: pytest.MonkeyPatch):
+    """The gap does not depend on loads; the same surface turned round is looked at anew, and refused."""
+    stated = Problem.model_validate({
+        "name": "roller", "material": {"young_modulus": 1000, "poisson_ratio": 0.3},
+        "boundary": {"outer": [
+            {"name": "rim", "kind": "arc", "center": [0, 8], "radius": 8, "angles": [-90, 0]},
+            {"name": "top"}, {"name": "axis", "start": [0, 8], "end": [0, 0]},
+        ]},
+        "conditions": {"top": {"pressure": 1}, "axis": {"displacement": {"x": 0}}},
+        "contact_zones": {"foot": {"edges": "rim", "surface": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}},
+    })  # fmt: skip
+    compared, closest = [], Plane.closest
+    monkeypatch.setattr(Plane, "closest", lambda *given: compared.append(given) or closest(*given))
+    stated.with_value("conditions.top.pressure", 2)
+    assert not compared
+    with pytest.raises(ProblemError, match="must point from the surface into the body"):
+        stated.with_value("contact_zones.foot.surface.normal", [0, -1])
+    assert compared
