@@ -13,6 +13,8 @@ import pytest
 
 import bemcontact
 from bemcontact import threads
+from bemcontact.analysis.case_comparisons import compare_cases
+from bemcontact.analysis.compare import mesh_study
 from bemcontact.threads import WORTH_THREADS, one_thread
 
 REAL = """
@@ -102,7 +104,8 @@ def test_threads_of_the_program_share_it(taken):
 @pytest.mark.parametrize(
     "function", [bemcontact.solve, bemcontact.condense, bemcontact.compare, bemcontact.follow, bemcontact.minimize_qp,
                  bemcontact.solve_lcp, bemcontact.solve_cases, bemcontact.load_path, bemcontact.design_gap,
-                 bemcontact.random_starts, bemcontact.sensitivities, bemcontact.ContactModel.solve],
+                 bemcontact.random_starts, bemcontact.sensitivities, bemcontact.ContactModel.solve, compare_cases,
+                 mesh_study],
 )  # fmt: skip
 def test_all_that_computes_is_decorated(function):
     assert function.__wrapped__.__name__ == function.__name__

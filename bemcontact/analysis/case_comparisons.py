@@ -12,6 +12,7 @@ from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.options import ComparisonOptions
 from bemcontact.problems.problem import Problem
 from bemcontact.serialization import Record, Recorded
+from bemcontact.threads import one_thread
 
 
 class CaseComparisonsRecord(Record):
@@ -82,6 +83,7 @@ class CaseComparisons(Recorded):
         )
 
 
+@one_thread
 def compare_cases(
     options: ComparisonOptions, problem: Problem, progress: Progress | None = None, changes: tuple[str, ...] = ()
 ) -> CaseComparisons:

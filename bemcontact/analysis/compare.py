@@ -94,6 +94,7 @@ def compare(
     return compared_on(read, prepare(problem, watch, errors=False), watch).comparison
 
 
+@one_thread
 def mesh_study(
     options: ComparisonOptions,
     problem: Problem | CondensedContact,

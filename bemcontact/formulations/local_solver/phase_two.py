@@ -23,6 +23,7 @@ from bemcontact.formulations.local_solver.optimality import SEEN
 from bemcontact.formulations.local_solver.progress import FINE, SearchState
 from bemcontact.formulations.local_solver.ratio_test import BlockingConstraint, nearest
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
+from bemcontact.formulations.local_solver.steepest_edge import SteepestEdge
 from bemcontact.formulations.local_solver.working_set import FLAT, TEMPORARY, WorkingSet, wrong_sign
 
 REFINEMENTS = 4
@@ -31,6 +32,8 @@ ROUNDED = 4.0 * EPS / SEEN
 """Size of a component that is zero in truth, over the numbers whose rounding it is."""
 CLEAR = 1e3
 """A multiplier of the wrong sign is released without refinement if it exceeds the zero of all by this factor."""
+WORTH_EDGES = 250
+"""Number of variables from which iterations saved by steepest-edge pricing are worth its time."""
 
 
 class ReducedHessian:
@@ -100,22 +103,27 @@ class ReducedHessian:
             self.pending = d if length == 1.0 else d / sqrt(length)
             self.curvature = curvature / length if curvature < -rounding else 0.0
 
-    def leave(self, normal: Array) -> None:
-        """Remove the part of the null space along the normal of a constraint that enters the working set: O(n²)."""
+    def leave(self, normal: Array) -> Array | None:
+        """Remove the part of the null space along the normal of a constraint that enters the working set: O(n²).
+
+        The result is the direction (n,) by which the span of Z is reduced, if nothing else has changed.
+        """
         pending, self.pending = self.pending, None
         if self.size == 0:
-            return
+            return None
         if self.size == 1 and pending is None:
             self._resize(0)
-            return
+            return self._columns[:, 0]
         along = normal.dot(self.Z)
         length = sqrt(dot(along, along))
         if length == 0.0:
-            return
+            return None
         last = self._reflect(along, length)
-        if pending is not None:
-            rest = length * pending - dot(normal, pending) * last
-            self.enter(rest / sqrt(dot(rest, rest)))
+        if pending is None:
+            return last
+        rest = length * pending - dot(normal, pending) * last
+        self.enter(rest / sqrt(dot(rest, rest)))
+        return None
 
     def _reflect(self, along: Array, length: float) -> Array:
         """Reflect Z so that the normal is orthogonal to all columns but the last; remove and return that column."""
@@ -177,6 +185,8 @@ class Descent:
         self._moved = 0.0
         self._known: tuple[Array, Array, Array, Array] | None = None
         self._refused: set[int] = set()
+        self._edges: SteepestEdge | None = None
+        self._by_edges = progress.x.size > WORTH_EDGES
         self.multipliers = self.zeros = self._refinement = progress.x[:0]
         self.working = working
         self.hessian = ReducedHessian(progress.statement, working.null_space)
@@ -217,6 +227,10 @@ class Descent:
         self.hessian.enter(direction)
         self.progress.changes += self.dropped < 0
         self.changed, self.whole, self.idle = True, 0, self.idle + 1
+        if self.hessian.pending is not None:  # curvatures say nothing where the form is not definite
+            self._edges, self._by_edges = None, False
+        elif self._edges and not self._edges.follow_release(self.dropped, self.hessian.Z[:, -1]):
+            self._edges = None
 
     def _next(self, multipliers: Array) -> tuple[bool, int | None]:
         """Whether to take a Newton step, and if not, the place of a constraint to drop, if there is one."""
@@ -247,12 +261,27 @@ class Descent:
     def _clearly_wrong(self, multipliers: Array) -> int | None:
         """The place of a constraint whose multiplier has a wrong sign beyond all rounding."""
         # N carries the rounding of the gradient to multipliers
-        working, zero = self.working, self.progress.zero
-        place = wrong_sign(working, multipliers, CLEAR * zero, least_index=self.progress.least_index)
-        n = working.free.size
+        working, zero, n = self.working, self.progress.zero, self.working.free.size
+        least, inverse = self.progress.least_index, working.inverse
+        place = wrong_sign(working, multipliers, CLEAR * zero, least_index=least)
         if place is None or not working.size or (place >= n and working.ids[place - n] == TEMPORARY):
             return place
-        return place if working.inverse.is_below(abs(multipliers.item(place)) / zero) else None
+        if not inverse.is_below(abs(multipliers.item(place)) / zero):
+            return None
+        if not self._by_edges or working.temporary or least:
+            return place
+        curvatures = self._curvatures()
+        edge = wrong_sign(working, multipliers, CLEAR * zero, least_index=False, curvatures=curvatures)
+        if edge is None or inverse.is_below(abs(multipliers.item(edge)) / zero):
+            return edge
+        above = max(CLEAR, inverse.largest) * zero
+        return wrong_sign(working, multipliers, above, least_index=False, curvatures=curvatures)
+
+    def _curvatures(self) -> Array:
+        """The curvatures of the edges of the working set (n + r,)."""
+        if self._edges is None:
+            self._edges = SteepestEdge(self.progress.statement, self.working, self.hessian.Z)
+        return self._edges.curvatures
 
     def _rests(self, step: Array) -> bool:
         """Whether a step from the start is no more than rounding, since the start is an answer of this solver."""
@@ -423,7 +452,11 @@ class Descent:
             if normal is None:
                 self.broken = True
             else:
-                hessian.leave(normal)
+                removed = hessian.leave(normal)
+                if self._edges and removed is not None:
+                    self._edges.follow_entry(removed)
+                else:
+                    self._edges = None
                 if hessian.size and added < normal.size:
                     hessian.clear(added)
         self.value += change

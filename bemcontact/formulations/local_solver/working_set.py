@@ -169,6 +169,14 @@ class WorkingSet:
         of_all[self.ids[real]] = of_rows[real]
         return of_all
 
+    def components(self, vector: Array) -> Array:
+        """Products (n + m,) of a vector with the directions that move one constraint by one and no other held."""
+        n, of_rows = self.free.size, self.inverse.against(vector)
+        components = np.zeros(self.held.size)
+        components[:n] = (vector - of_rows.dot(self.W)) * self.held[:n]
+        components[self.ids] = of_rows
+        return components
+
     def _refine(self, of_rows: Array, gradient: Array, rest: Array) -> Array:
         """Multipliers of the rows after a refinement, from a new N if the correction is too large.
 
@@ -367,11 +375,19 @@ def supporting(progress: SearchState, sides: Sides) -> Sides:
     return supporting
 
 
-def wrong_sign(working: WorkingSet, multipliers: Array, zero: float | Array, *, least_index: bool) -> int | None:
+def wrong_sign(
+    working: WorkingSet,
+    multipliers: Array,
+    zero: float | Array,
+    *,
+    least_index: bool,
+    curvatures: Array | None = None,
+) -> int | None:
     """The place of the constraint to drop; None if all signs are right.
 
     `zero` is the size of a multiplier that counts as zero, one for all or (n + r,). With `least_index` the constraint
-    of the lowest number among those with a wrong sign is taken (Bland 1977).
+    of the lowest number among those with a wrong sign is taken (Bland 1977); with `curvatures` (n + r,) that of the
+    steepest edge, else that of the largest multiplier.
     """
     wrong = working.signs * multipliers
     if working.temporary:
@@ -386,4 +402,6 @@ def wrong_sign(working: WorkingSet, multipliers: Array, zero: float | Array, *, 
         return None
     if least_index:
         return int(np.where(wrong > zero, working.numbers, working.held.size).argmin())
+    if curvatures is not None:
+        return int((np.square(np.where(wrong > zero, wrong, 0.0)) / curvatures).argmax())
     return place
