@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -114,8 +115,14 @@ def imported(statement: ast.AST) -> Iterator[str]:
         yield from (f"{statement.module}.{alias.name}" for alias in statement.names)
 
 
+@cache
+def nodes(tree: ast.Module) -> tuple[ast.AST, ...]:
+    """All parts of a module, which one rule after another looks at."""
+    return tuple(ast.walk(tree))
+
+
 def imports(tree: ast.Module) -> Iterator[str]:
-    for statement in ast.walk(tree):
+    for statement in nodes(tree):
         yield from imported(statement)
 
 
@@ -148,20 +155,20 @@ def one_home_for_each_foreign_package(name: str, tree: ast.Module) -> Iterator[s
 
 
 def no_type_checking_imports(name: str, tree: ast.Module) -> Iterator[str]:
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
             hidden = (part for part in ast.walk(node) if isinstance(part, ast.Import | ast.ImportFrom))
             yield from (f"{name}:{part.lineno} hides an import behind TYPE_CHECKING" for part in hidden)
 
 
 def no_relative_imports(name: str, tree: ast.Module) -> Iterator[str]:
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         if isinstance(node, ast.ImportFrom) and node.level:
             yield f"{name}:{node.lineno} imports relatively"
 
 
 def imports_at_the_top(name: str, tree: ast.Module) -> Iterator[str]:
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         if node in tree.body:
             continue
         for target in imported(node):
@@ -193,7 +200,7 @@ def public_names_have_docstrings(name: str, tree: ast.Module) -> Iterator[str]:
 
 
 def only_the_command_line_prints(name: str, tree: ast.Module) -> Iterator[str]:
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         printing = isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "print"
         if printing and not any(within(name, room) for room in PRINTERS):
             yield f"{name}:{node.lineno} prints"
@@ -231,7 +238,9 @@ def cycle(graph: dict[str, set[str]]) -> list[str]:
     return sorted(left)
 
 
+@cache
 def modules_of_the_package() -> dict[str, ast.Module]:
+    """Each module by its name, parsed by the first test that asks for them."""
     modules = {}
     for path in sorted(PACKAGE.rglob("*.py")):
         parts = ("bemcontact", *path.relative_to(PACKAGE).with_suffix("").parts)
@@ -240,25 +249,22 @@ def modules_of_the_package() -> dict[str, ast.Module]:
     return modules
 
 
-MODULES = modules_of_the_package()
-
-
 def test_the_whole_package_is_looked_at():
     assert {
         "bemcontact",
         "bemcontact.contact.condensed_contact",
         "bemcontact.bem.kernels",
         "bemcontact.cli",
-    } <= MODULES.keys()
+    } <= modules_of_the_package().keys()
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.__name__)
 def test_the_package_keeps_the_rule(rule: Rule):
-    assert [text for name, tree in MODULES.items() for text in rule(name, tree)] == []
+    assert [text for name, tree in modules_of_the_package().items() for text in rule(name, tree)] == []
 
 
 def test_no_ring_of_imports():
-    assert cycle(import_graph(MODULES)) == []
+    assert cycle(import_graph(modules_of_the_package())) == []
 
 
 ONE_MEANING = {
@@ -286,7 +292,7 @@ def names_of_several_modules(modules: dict[str, ast.Module]) -> set[str]:
 
 
 def test_no_name_means_two_things():
-    assert names_of_several_modules(MODULES) == ONE_MEANING.keys()
+    assert names_of_several_modules(modules_of_the_package()) == ONE_MEANING.keys()
 
 
 def test_a_name_of_several_modules_is_found():

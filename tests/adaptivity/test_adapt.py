@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 from math import asin, cos, pi, radians, sin, sqrt, tan
 
 import numpy as np
@@ -734,6 +735,12 @@ def tip(elements: int, across: int, pressure: float) -> Problem:
     return stated(strip, [elements, across, across, across]).with_value("mesh.adapt", False)
 
 
+@cache
+def tip_finely() -> ErrorBar:
+    """The displacement of that cantilever under 0.01 on a fine mesh, which is found whatever mesh is stated."""
+    return solve(tip(1, 1, 0.01).to_be_meshed(1e-3)).accuracy.bar_of("displacement")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("elements", "across", "pressure"), [(10, 3, 8.0), (14, 10, 30.0), (30, 22, 8.0)])
 def test_a_force_beside_an_infinite_pressure_alone_is_told(elements: int, across: int, pressure: float):
@@ -747,9 +754,8 @@ def test_a_force_beside_an_infinite_pressure_alone_is_told(elements: int, across
 @pytest.mark.parametrize(("elements", "across"), [(9, 1), (5, 1), (1, 24)])
 def test_without_contact_a_coarse_mesh_is_compared(elements: int, across: int):
     """Elements longer than the body is thick: by beam theory the tip moves by F L³ / 3EI."""
-    strip = tip(elements, across, 0.01)
-    bar = solve(strip).accuracy.bar_of("displacement")
-    fine = solve(strip.to_be_meshed(1e-3)).accuracy.bar_of("displacement")
+    bar = solve(tip(elements, across, 0.01)).accuracy.bar_of("displacement")
+    fine = tip_finely()
     assert fine.value == pytest.approx(0.01 * 4 * 60**3 / (3 * 210e3 / (1 - 0.3**2) * 4**3 / 12), rel=0.02)
     assert bar.bar is None or abs(bar.value - fine.value) <= bar.bar * bar.value + fine.bar * fine.value
 

@@ -3,6 +3,7 @@
 Loads that balance, and growth within a clearance: no contact, exactly, and sane numbers in any units.
 """
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -252,11 +253,13 @@ def loose_ring(load: str, gap: float, size: float = 1.0, stress: float = 1.0, el
     )
 
 
+@cache
 def growth(load: str) -> np.ndarray:
     """How far the rim moves outwards without contact, at each point; the mean position is fixed by the gauge."""
     return -condense(loose_ring(load, 0.0)).free_displacement
 
 
+@cache
 def terms(load: str) -> float:
     """Largest sum of the magnitudes of the displacements that load cases, or all loads together, add up to growth."""
     contact = condense(loose_ring(load, 0.0))
@@ -264,16 +267,12 @@ def terms(load: str) -> float:
     return float(abs(parts).sum(axis=1).max())
 
 
-GROWTH = {load: growth(load) for load in LOADS}
-TERMS = {load: terms(load) for load in LOADS}
-
-
 @settings(max_examples=15)
 @given(load=st.sampled_from(LOADS), excess=st.floats(-9, 0.5), size=POWERS, stress=POWERS, formulation=st.booleans())
 def test_growth_within_the_clearance_makes_no_contact(load, excess, size, stress, formulation):
     """A clearance above the largest growth leaves p = 0 as the only solution, whatever the units."""
     assume(load != "spin" or abs(stress - 2 * size) < 30)  # the density, which is bounded like each stated number
-    gap = float(GROWTH[load].max()) * (1 + 10**excess)
+    gap = float(growth(load).max()) * (1 + 10**excess)
     problem = loose_ring(load, gap * 10.0**size, 10.0**size, 10.0**stress)
     result = solve(problem, "qp3" if formulation else "complementarity")
     assert result.certified
@@ -284,7 +283,7 @@ def test_growth_within_the_clearance_makes_no_contact(load, excess, size, stress
     assert result.certificate.error_bound < 1e-9 * result.contact.scales.pressure
     assert result.certificate.relative_error_bound is None
     U = result.contact.scales.displacement
-    assert pytest.approx((gap + TERMS[load]) * 10.0**size, rel=1e-9) == U  # no scale is round-off
+    assert pytest.approx((gap + terms(load)) * 10.0**size, rel=1e-9) == U  # no scale is round-off
     texts = dict(facts(result.to_dict(), units_of(result.contact)))
     assert texts["Contact"].startswith("nowhere")
     assert texts.get("Rotation", ": not determined").endswith(": not determined")
@@ -303,9 +302,9 @@ def test_growth_beyond_the_clearance_makes_contact(load, depth, size, stress):
     no less than what the wall prevents of this. M p takes it all away: ‖M‖∞ max p >= U = ‖M‖∞ T.
     """
     assume(load != "spin" or abs(stress - 2 * size) < 30)
-    gap = float(GROWTH[load].min()) * (1 - 10**depth)
+    gap = float(growth(load).min()) * (1 - 10**depth)
     result = solve(loose_ring(load, gap * 10.0**size, 10.0**size, 10.0**stress), "complementarity")
-    least, most = ((growth - gap) * 10.0**size for growth in (GROWTH[load].min(), GROWTH[load].max()))
+    least, most = ((moved - gap) * 10.0**size for moved in (growth(load).min(), growth(load).max()))
     assert result.certified
     assert result.footprint.peak is not None
     assert result.footprint.intervals

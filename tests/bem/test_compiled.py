@@ -1,6 +1,10 @@
-"""Machine code and NumPy set up the same equations; without numba, NumPy is used."""
+"""Machine code and NumPy set up the same equations; without numba, NumPy is used.
+
+In a fresh tree numba compiles for about 20 s, so that tests of compiled code are slow. Its source is run as Python too.
+"""
 
 import dataclasses
+import importlib.util
 import sys
 from pathlib import Path
 
@@ -60,6 +64,21 @@ def without_numba(monkeypatch):
     machine_code.cache_clear()
 
 
+@pytest.fixture
+def without_compilation(monkeypatch):
+    """The functions that numba compiles run as Python, which takes no seconds at first, but long for many elements."""
+    name = "bemcontact.bem.compiled"
+    found = importlib.util.find_spec(name)
+    module = importlib.util.module_from_spec(found)
+    monkeypatch.setattr("numba.njit", lambda function, **_: function)
+    found.loader.exec_module(module)
+    monkeypatch.setitem(sys.modules, name, module)
+    machine_code.cache_clear()
+    with np.errstate(divide="ignore", invalid="ignore"):  # at points on an element, whose sums are replaced
+        yield
+    machine_code.cache_clear()
+
+
 def of_body(loops, fixed):
     """A body under constant stress, on whose edges in `fixed` displacement is prescribed."""
     mesh = mesh_of(*loops)
@@ -95,6 +114,15 @@ def ensure_the_same(system):
     assert (abs(b - d).max(axis=0) <= 1e-13 * abs(d).max(axis=0)).all()
 
 
+@pytest.mark.usefixtures("without_compilation")
+@pytest.mark.parametrize("axes", ["", "xy"])
+@pytest.mark.parametrize("name", [name for name in MESHES if name != "ligament of 0.01"])
+def test_the_source_of_the_machine_code_and_numpy_agree(name, axes):
+    """What is compiled is right before it is compiled; few elements, as Python runs it."""
+    first, *_ = mesh_of(*MESHES[name]).edge_names
+    ensure_the_same(of_body(MESHES[name], {first: axes} if axes else {}))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("refine", [1, 2])
 @pytest.mark.parametrize("name", SHIPPED)
@@ -103,6 +131,7 @@ def test_machine_code_and_numpy_agree_on_shipped_models(name, refine):
     ensure_the_same(of_model(name, refine))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("axes", ["", "x", "y", "xy"])
 @pytest.mark.parametrize("name", BODIES)
 def test_machine_code_and_numpy_agree(name, axes):
@@ -111,6 +140,7 @@ def test_machine_code_and_numpy_agree(name, axes):
     ensure_the_same(of_body(BODIES[name], {first: axes} if axes else {}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "fixed", [{"bottom": "xy", "left": "xy"}, {"bottom": "y", "left": "x"}, {"bottom": "xy", "right": "x", "left": "y"}]
 )
@@ -119,6 +149,7 @@ def test_machine_code_and_numpy_agree_where_fixed_edges_meet(fixed):
     ensure_the_same(of_body(BODIES["plate with a hole"], fixed | {"hole": "xy"}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [16, 32, 64, 128])
 def test_blocks_of_all_sizes_agree(size, monkeypatch):
     assert machine_code() is not None
@@ -126,6 +157,7 @@ def test_blocks_of_all_sizes_agree(size, monkeypatch):
     ensure_the_same(of_body(BODIES["two loops"], {"bottom": "xy"}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["slit_closure", "gallery/body_between_two_tools", "gallery/flat_punch"])
 def test_residual_of_rows_computed_anew_is_that_of_the_matrix(name, monkeypatch):
     monkeypatch.setattr("bemcontact.bem.solution.POINTS_OF_RESIDUAL", 37)
@@ -137,6 +169,7 @@ def test_residual_of_rows_computed_anew_is_that_of_the_matrix(name, monkeypatch)
         assert abs(residual(system, x, weights) - expected).max() <= 1e-13 * abs(expected).max()
 
 
+@pytest.mark.slow
 def test_short_elements_keep_their_digits_by_machine_code():
     """F u = 0 for translations, with the same accuracy in the rows of the shortest elements as elsewhere."""
     for turn in (0.0, 0.5):
@@ -163,6 +196,7 @@ def test_machine_code_is_used_where_it_pays(monkeypatch):
     assert dataclasses.replace(small).machine_code is not None
 
 
+@pytest.mark.slow
 def test_result_notes_that_machine_code_was_used(monkeypatch):
     problem = bemcontact.load(MODELS / "cylinder_on_plane.yaml", variant="stated mesh")
     assert BY_NUMBA not in condense(body_of(problem)).contact.notes
@@ -192,6 +226,7 @@ def test_machine_code_that_cannot_be_cached_is_compiled_again(monkeypatch):
     assert sys.modules["bemcontact.bem.compiled"]._machine_code(displacement) is displacement
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fixed", [{}, {"left": "xy"}, {"bottom": "y", "left": "x"}])
 def test_constant_stress_is_exact_by_machine_code(fixed, monkeypatch):
     """The patch test, with numba chosen by default."""
@@ -207,6 +242,7 @@ def test_constant_stress_is_exact_by_machine_code(fixed, monkeypatch):
     assert of_stress < 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", [0, 1])
 def test_both_take_as_many_threads_as_the_environment_says(monkeypatch, way):
     """Workers of a study have one processor each."""

@@ -41,6 +41,7 @@ def test_a_table_a_page_and_its_numbers(tmp_path: Path, monkeypatch: pytest.Monk
     assert numbers.read_text(encoding="utf-8") == (place / "numbers.json").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_reproduction_that_fails_ends_with_status_1(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(analysis, "reproduce", lambda *_: with_coarse_mesh_judged())
     answer = run("reproduce")

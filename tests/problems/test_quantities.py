@@ -177,7 +177,9 @@ def restated(problem, units):
     return bemcontact.problem({**with_units(stated, (), own["length"], own["force"]), "units": units})
 
 
-@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.stem)
+@pytest.mark.parametrize(
+    "model", [pytest.param(it, id=it.stem, marks=[pytest.mark.slow] * (it.stem == "roller_bearing")) for it in MODELS]
+)
 def test_a_model_with_units_behind_its_numbers_is_the_same(model):
     """In its own units up to the rounding of a conversion there and back; elsewhere it is a sound problem too."""
     problem = bemcontact.load(model)

@@ -1,47 +1,29 @@
 """What objects show of themselves: notebooks, data frames, arrays; each value is that of the object."""
 
 import sys
-from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
+from shown import GALLERY, LOAD, MODULUS, shown
 
 import bemcontact
 from bemcontact.report import views
-
-GALLERY = Path(__file__).parents[2] / "models" / "gallery"
-LOAD, MODULUS = "conditions.top.pressure", "material.young_modulus"
-
-
-@cache
-def items():
-    roller = bemcontact.load(GALLERY / "hertz_small.yaml")
-    result = bemcontact.solve(roller, accuracy=0.05)
-    return {
-        "problem": roller,
-        "result": result,
-        "cases": bemcontact.solve_cases(bemcontact.load(GALLERY / "roller_in_v_block.yaml"), accuracy=0.1),
-        "comparison": bemcontact.compare(result.contact, ["qp3"]),
-        "path": bemcontact.follow(roller, LOAD, to=100.0, start=50.0, accuracy=0.1),
-        "study": bemcontact.study(roller, {LOAD: [10.0, 40.0], MODULUS: [1e5, 2e5, 4e5]}, accuracy=0.1),
-    }
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["problem", "result", "cases", "comparison", "path", "study"])
 def test_a_notebook_shows_a_picture_and_a_table_without_markup_of_the_user(name):
-    page = items()[name]._repr_html_()
+    page = shown(name)._repr_html_()
     assert "src='data:image/svg+xml;base64," in page
     assert "<table" in page
-    shown = bemcontact.load(GALLERY / "hertz_small.yaml", {"name": "<b>bold</b>"})._repr_html_()
-    assert "<b>" not in shown
-    assert "&lt;b&gt;bold" in shown
+    marked = bemcontact.load(GALLERY / "hertz_small.yaml", {"name": "<b>bold</b>"})._repr_html_()
+    assert "<b>" not in marked
+    assert "&lt;b&gt;bold" in marked
 
 
 @pytest.mark.slow
 def test_the_frame_of_a_result_has_each_contact_point():
-    result = items()["result"]
+    result = shown("result")
     frame = result.to_frame()
     assert [*frame.columns[:3]] == ["zone", "x", "y"]
     order = np.lexsort([frame.y, frame.x])
@@ -54,7 +36,7 @@ def test_the_frame_of_a_result_has_each_contact_point():
 
 @pytest.mark.slow
 def test_the_frame_of_load_cases_has_each_case():
-    cases = items()["cases"]
+    cases = shown("cases")
     frame = cases.to_frame()
     for name, result in cases.results.items():
         own = frame[frame.case == name]
@@ -63,7 +45,7 @@ def test_the_frame_of_load_cases_has_each_case():
 
 
 def test_the_frame_of_a_path_has_each_breakpoint():
-    path = items()["path"]
+    path = shown("path")
     frame = path.to_frame()
     peaks = frame.groupby(path.key).pressure.max()
     assert [*peaks.index] == [path.value(t) for t in path.path.parameter.tolist()]
@@ -71,7 +53,7 @@ def test_the_frame_of_a_path_has_each_breakpoint():
 
 
 def test_the_frames_of_a_study_and_a_comparison_have_their_rows():
-    study, comparison = items()["study"], items()["comparison"]
+    study, comparison = shown("study"), shown("comparison")
     assert {name: [*column] for name, column in study.to_frame()[["member", "status"]].items()} == {
         name: study.table()[name] for name in ("member", "status")
     }
@@ -80,7 +62,7 @@ def test_the_frames_of_a_study_and_a_comparison_have_their_rows():
 
 @pytest.mark.slow
 def test_arrays_have_named_dimensions():
-    result, cases, path, study = (items()[name] for name in ("result", "cases", "path", "study"))
+    result, cases, path, study = (shown(name) for name in ("result", "cases", "path", "study"))
     arrays = result.to_xarray()
     np.testing.assert_array_equal(arrays.pressure, result.pressure)
     assert arrays.pressure.attrs["units"] == "MPa"
@@ -99,16 +81,16 @@ def test_arrays_have_named_dimensions():
 
 def test_what_has_no_arrays_or_packages_says_so(monkeypatch):
     with pytest.raises(bemcontact.ProblemError, match="to_frame has its table"):
-        items()["comparison"].to_xarray()
+        shown("comparison").to_xarray()
     monkeypatch.setattr(views, "find_spec", lambda name: None)
     with pytest.raises(ModuleNotFoundError, match=r"pandas is not installed.*bemcontact\[tables\]"):
-        items()["result"].to_frame()
+        shown("result").to_frame()
     with pytest.raises(ModuleNotFoundError, match="xarray is not installed"):
-        items()["result"].to_xarray()
+        shown("result").to_xarray()
 
 
 def test_results_lead_to_their_parts_and_have_units_in_their_line():
-    result = items()["result"]
+    result = shown("result")
     assert result.peak is result.footprint.peak
     assert result.intervals is result.footprint.intervals
     assert result.forces is result.footprint.forces

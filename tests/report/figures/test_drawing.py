@@ -1,31 +1,11 @@
 """Objects draw themselves into axes of matplotlib by the names of their pictures."""
 
-from functools import cache
-from pathlib import Path
-
 import pytest
 from matplotlib import pyplot
 from matplotlib.figure import Figure
+from shown import LOAD, MODULUS, shown
 
 import bemcontact
-
-GALLERY = Path(__file__).parents[3] / "models" / "gallery"
-LOAD, MODULUS = "conditions.top.pressure", "material.young_modulus"
-
-
-@cache
-def items():
-    roller = bemcontact.load(GALLERY / "hertz_small.yaml")
-    result = bemcontact.solve(roller, accuracy=0.1)
-    return {
-        "problem": roller,
-        "result": result,
-        "condensed": bemcontact.solve(result.contact),
-        "cases": bemcontact.solve_cases(bemcontact.load(GALLERY / "roller_in_v_block.yaml"), accuracy=0.1),
-        "comparison": bemcontact.compare(result.contact, ["qp3"]),
-        "path": bemcontact.follow(roller, LOAD, to=100.0, start=50.0, accuracy=0.1),
-        "study": bemcontact.study(roller, {LOAD: [10.0, 40.0], MODULUS: [1e5, 2e5, 4e5]}, accuracy=0.1),
-    }
 
 
 def label(axes):
@@ -56,7 +36,7 @@ def label(axes):
 )
 def test_an_object_draws_into_the_axes_that_it_is_given(name, options, labels):
     axes = Figure(layout="constrained").add_subplot()
-    assert items()[name].plot(axes, **options) is axes
+    assert shown(name).plot(axes, **options) is axes
     assert axes.lines or axes.patches or axes.collections
     for found, wanted in zip(label(axes), labels, strict=True):
         assert wanted in (None, found)
@@ -65,7 +45,7 @@ def test_an_object_draws_into_the_axes_that_it_is_given(name, options, labels):
 @pytest.mark.slow
 def test_axes_are_made_where_none_are_given():
     pyplot.switch_backend("agg")
-    axes = items()["result"].plot()
+    axes = shown("result").plot()
     assert axes.figure.number in pyplot.get_fignums()
     pyplot.close(axes.figure)
 
@@ -92,4 +72,4 @@ def test_axes_are_made_where_none_are_given():
 )
 def test_what_cannot_be_drawn_is_refused_in_words(name, options, words):
     with pytest.raises(bemcontact.ProblemError, match=words):
-        items()[name].plot(**options)
+        shown(name).plot(**options)

@@ -129,6 +129,7 @@ def test_a_case_without_displacements_sets_no_magnification():
     assert magnification([still]) == 1
 
 
+@pytest.mark.slow
 def test_each_panel_marks_the_largest_stress_or_those_that_are_infinite():
     """Rings where stress is finite but not the same all over; crosses below the edges of the sharp punch."""
     cases = solved("body_between_two_tools")
@@ -169,6 +170,7 @@ def test_titles_and_labels_lie_in_the_figure_and_apart(name: str, draw):
     assert not any(a.overlaps(b) for a, b in combinations(boxes, 2))
 
 
+@pytest.mark.slow
 def test_the_figure_of_load_cases_shows_the_stress_that_was_asked_for():
     labels = [axes.get_ylabel() for axes in figures.figure_of(solved("eccentric_punch"), StressMeasure.MAX_SHEAR).axes]
     assert labels.count("largest shear stress [MPa]") == 1

@@ -1,10 +1,12 @@
 """Figures of the paper's problems: computed curves beside the references."""
 
+import pytest
 from reproductions import on_base_meshes
 
 from bemcontact.report.figures import figures_of_reproduction
 
 
+@pytest.mark.slow
 def test_figures_show_curves_and_references():
     """Of the flat surface the run without contact is left out; Fig. 2 has a second frame, the paper's."""
     figures = figures_of_reproduction(on_base_meshes())

@@ -263,6 +263,7 @@ def test_panels_show_a_small_contact_and_about_its_width_to_either_side(name: st
         assert max(arcs) - min(arcs) > 0.13 * (high - low)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["gallery/hertz_small", "gallery/flat_punch", "cylinder_on_plane", "gallery/block_in_corner"]
 )
