@@ -35,8 +35,6 @@ AT_ONCE, GOOD, POOR = 1e-9, 1e-8, 1e-5
 PROOF = 1e-6
 """Error of a ray up to which it is a proof: nothing feasible is then smaller than a million times the data."""
 ITERATIONS = 200
-FACTORIZATION = "qdldl"
-"""On one thread, in half the time of Clarabel's own choice with 200 and 400 contact points."""
 REFINEMENT = {
     "iterative_refinement_max_iter": 50,
     "iterative_refinement_stop_ratio": 1.5,
@@ -324,7 +322,7 @@ def _solve_rest(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations:
     settings.verbose, settings.max_iter = False, min(max_iterations, LARGEST_COUNT)
     settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = ASKED
     settings.tol_infeas_abs = settings.tol_infeas_rel = RAY
-    settings.direct_solve_method = FACTORIZATION
+    settings.max_threads = 1  # more take longer with hundreds of points, as of BLAS
     for name, value in chosen.items():
         setattr(settings, name, value)
     P = triu(symmetric(data), format="csc")
