@@ -215,7 +215,7 @@ class System:
     @cached_property
     def influence(self) -> Influence:
         """The integrals, with columns of G for unknown tractions and pressures and the sum for known ones."""
-        needed: BoolArray = np.any(self.unknowns.traction >= 0, axis=(1, 2))
+        needed: BoolArray = np.asarray((self.unknowns.traction >= 0).any(axis=(1, 2)))
         needed[self.points.element] = True
         needed[self._sprung] = True
         jacobians = self.mesh.jacobians / self.length
