@@ -35,13 +35,13 @@ class FlatPoints(NamedTuple):
     @classmethod
     def of(cls, collocation: Collocation, row: IntArray) -> Self:
         """Points with the rows (c, 2) of their equations."""
-        order = np.argsort(collocation.on_point, kind="stable")
+        order = collocation.on_point.argsort(kind="stable")
         return cls(
             row=_integers(row.T),
             base=_complexes(collocation.base),
             offset=_complexes(collocation.offset),
             corner=_integers(collocation.corner),
-            on_start=_integers(np.searchsorted(collocation.on_point[order], np.arange(len(collocation) + 1))),
+            on_start=_integers(collocation.on_point[order].searchsorted(np.arange(len(collocation) + 1))),
             on_element=_integers(collocation.on_element[order]),
             on_local=_reals(collocation.on_local[order]),
         )
@@ -113,8 +113,8 @@ class FlatColumns(NamedTuple):
     ) -> Self:  # fmt: skip
         """Sort columns (q,) of G with tractions times Jacobian (q, 2) at slots 3 e + k (q,) by slots."""
         m = known_traction.shape[1]
-        order = np.argsort(slot, kind="stable")
-        start = np.searchsorted(slot[order], np.arange(3 * m + 1))
+        order = slot.argsort(kind="stable")
+        start = slot[order].searchsorted(np.arange(3 * m + 1))
         return cls(
             displacement=_integers(displacement),
             known=_reals(known),

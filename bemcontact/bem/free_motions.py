@@ -187,10 +187,11 @@ class FreeMotions:
 
     def _whole(self, motion: int) -> str:
         """Describe a motion, with what moves unless it is an only body."""
-        way, moving = self.way(motion), self._moving(motion)
-        if len(moving) > 1 and len(self._ways(motion)) > 1:
-            return way
-        who = self._together(moving)
+        ways = self._ways(motion)
+        if len(ways) > 1:
+            return self.way(motion)
+        (way, parts), *_ = ways.items()
+        who = self._together(parts)
         return way if who == BODY else f"{way} of {who}"
 
     def who(self, motion: int) -> str:

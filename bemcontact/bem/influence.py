@@ -284,8 +284,10 @@ class Influence:
         nodes = pairs.take(order, axis=2)
         parts = [kernels.components(kernels.with_root_split_off(on.and_those(beside)), self.factors)]
         for rule, (first, last) in zip(self._rules, itertools.pairwise(ends), strict=True):
-            if last > first:
-                parts.append(kernels.regular(kernels.numerators(nodes[..., first:last], rule), rule, with_U=True))
+            step = CACHE_SIZE // rule.shapes.shape[1]
+            for begin in range(first, last, step):
+                some = nodes[..., begin : min(begin + step, last)]
+                parts.append(kernels.regular(kernels.numerators(some, rule), rule, with_U=True))
         place, shape = np.empty_like(order), (len(element), -1)
         place[order] = np.arange(len(order))
         T, U = (np.concatenate(part, axis=2).take(place, axis=2) for part in zip(*parts, strict=True))

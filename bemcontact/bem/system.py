@@ -165,9 +165,13 @@ class _Carried(NamedTuple):
 
     def times(self, G: Array) -> Array:
         """Columns of the unknowns (…, q) from G transposed (3e, q)."""
-        result = np.zeros((self.columns, G.shape[1]))
-        for rows, column, factor in self.parts:
-            result[column] += factor * G[rows]
+        parts = [(column, factor * G[rows]) for rows, column, factor in self.parts]
+        if parts and len(parts[0][0]) == self.columns:  # each column once, in order
+            (_, result), *parts = parts
+        else:
+            result = np.zeros((self.columns, G.shape[1]))
+        for column, its in parts:
+            result[column] += its
         return result
 
 
@@ -215,7 +219,7 @@ class System:
     @cached_property
     def influence(self) -> Influence:
         """The integrals, with columns of G for unknown tractions and pressures and the sum for known ones."""
-        needed: BoolArray = np.any(self.unknowns.traction >= 0, axis=(1, 2))
+        needed: BoolArray = np.asarray((self.unknowns.traction >= 0).any(axis=(1, 2)))
         needed[self.points.element] = True
         needed[self._sprung] = True
         jacobians = self.mesh.jacobians / self.length

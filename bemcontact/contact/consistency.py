@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from bemcontact.arrays import Array, Dimensions, IntArray, read_arrays, real_array, whole_array
-from bemcontact.checks.arguments import label, labels, shown, visible_texts
-from bemcontact.errors import ProblemError
+from bemcontact.checks.arguments import LONGEST_NAME, label, labels, shown, visible_texts
+from bemcontact.errors import ProblemError, hidden_character
 
 UNIT = 1e-9
 """Deviation of the length of a normal from 1 that is round-off; it enters the resultant as a relative error."""
@@ -61,6 +61,8 @@ def ensure_independent(rigid_motions: Array) -> None:
 
 def ensure_labels(contact: Any) -> None:
     """Refuse labels that are no texts, or that a spec could not have."""
+    if _are_labels(contact):
+        return
     label(contact.name, "name")
     for field, read in (("zone_names", labels), ("notes", visible_texts), ("motion_names", visible_texts)):
         object.__setattr__(contact, field, read(getattr(contact, field), field))
@@ -70,6 +72,19 @@ def ensure_labels(contact: Any) -> None:
     labels([text for pair in units.items() for text in pair], "units")
     if len({*contact.zone_names}) < len(contact.zone_names):
         raise ProblemError(f"zone_names must be different from each other; found {', '.join(contact.zone_names)}")
+
+
+def _are_labels(contact: Any) -> bool:
+    """Whether all labels and notes are lines of visible text, as they nearly always are: one search tells."""
+    names, units = contact.zone_names, contact.units
+    if type(units) is not dict or any(type(part) is not tuple for part in (names, contact.notes, contact.motion_names)):
+        return False
+    texts = [contact.name, *names, *contact.notes, *contact.motion_names, *units, *units.values()]
+    return (
+        all(type(text) is str and len(text) <= LONGEST_NAME for text in texts)
+        and hidden_character("".join(texts)) is None
+        and len({*names}) == len(names)
+    )
 
 
 def ensure_parts_fit(contact: Any) -> None:

@@ -64,18 +64,15 @@ class ContactBlock:
     @cached_property
     def _lu(self) -> LU:
         """The factors of the matrix; `SingularSystemError` if it is singular to working precision."""
-        lu = LU.of(self.matrix)
-        if self._may_be_singular(lu) and self._equilibrated().reciprocal_condition < len(self.matrix) * EPS:
+        lu, m = LU.of(self.matrix), len(self.matrix)
+        # Columns of similar size have a condition that is 2 m times as large at most.
+        doubtful = lu.reciprocal_condition < ESTIMATED * 2 * m * m * EPS
+        if doubtful and self._equilibrated().reciprocal_condition < m * EPS:
             raise SingularSystemError(
                 "the points in contact do not determine their pressures and the position of the body: the equations of "
                 "contact are singular"
             )
         return lu
-
-    def _may_be_singular(self, lu: LU) -> bool:
-        """Whether columns of similar size could be singular: their condition is 2 m times as large at most."""
-        m = len(self.matrix)
-        return lu.reciprocal_condition < ESTIMATED * 2 * m * m * EPS
 
     def _equilibrated(self) -> LU:
         """The factors with columns over powers of two near their sizes: small weights make no matrix singular.
@@ -184,7 +181,7 @@ def solve_active_set(scaled: ScaledContact, active: BoolArray) -> tuple[Array, A
     The amplitudes are the shortest least-squares solution if the set holds the body too little or too often. It is
     refined: a light load must not drown in the rounding of gaps.
     """
-    block = ContactBlock(scaled=scaled, points=np.flatnonzero(active))
+    block = ContactBlock(scaled=scaled, points=active.nonzero()[0])
     right = -np.concatenate([scaled.offset[block.points], scaled.motion_load])
     try:
         unknowns = block.inverse(right)

@@ -42,10 +42,12 @@ class ScaledContact(MotionAlgebra):
 
     def residual(self, pressure: Array, amplitudes: Array) -> float:
         """Largest of |min(p, δ)| and |ℓᵀp + load| / Σ|ℓ|, over the size 1 + max|p| + Σ|a| of the numbers in them."""
-        natural = np.abs(np.minimum(pressure, self.gap(pressure, amplitudes))).max(initial=0.0)
-        size = 1.0 + np.abs(pressure).max(initial=0.0) + np.abs(amplitudes).sum()
-        balance = np.abs(self.equilibrium.T @ pressure + self.motion_load) / self._levers
-        return float(max(natural, balance.max(initial=0.0)) / size)
+        natural = abs(np.minimum(pressure, self.gap(pressure, amplitudes))).max(initial=0.0)
+        size = 1.0 + abs(pressure).max(initial=0.0)
+        if not len(amplitudes):
+            return float(natural / size)
+        balance = abs(self.equilibrium.T @ pressure + self.motion_load) / self._levers
+        return float(max(natural, balance.max()) / (size + abs(amplitudes).sum()))
 
     @cached_property
     def _levers(self) -> Array:
