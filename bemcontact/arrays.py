@@ -169,7 +169,7 @@ def exact_remainders(right: Array, rows: Array, x: Array) -> Array:
     """The components of right - rows x, each rounded once: Dekker's products of halves of numbers, and exact sums."""
     remainders = right - rows @ x
     for part, products, lost in _exact_products(rows, x):
-        terms = np.column_stack([right[part], -products, -lost])
+        terms = np.concatenate([right[part, None], -products, -lost], axis=1)
         if np.isfinite(terms).all():
             remainders[part] = [fsum(row) for row in terms.tolist()]
     return remainders
@@ -184,7 +184,7 @@ def fine_remainders(right: Array, rows: Array, x: Array) -> Array:
     if 4 * np.count_nonzero(used := x != 0.0) <= 3 * x.size:
         rows, x = rows[:, used], x[used]
     for part, products, lost in _exact_products(rows, x):
-        sums, rounding = np.column_stack([right[part], -products]), -lost.sum(axis=1)
+        sums, rounding = np.concatenate([right[part, None], -products], axis=1), -lost.sum(axis=1)
         while (half := sums.shape[1] // 2) > 0:
             one, other, rest = sums[:, :half], sums[:, half : 2 * half], sums[:, 2 * half :]
             rounding += sum_remainders(one, other).sum(axis=1)

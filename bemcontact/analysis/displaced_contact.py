@@ -52,7 +52,8 @@ def displaced(
     for number, zone in enumerate(contact.zone_names):
         if zone not in gaps.surfaces:
             continue
-        own, surface = contact.zone == number, gaps.surfaces[zone]
+        of_zone, surface = contact.zone == number, gaps.surfaces[zone]
+        own = slice(None) if of_zone.all() else of_zone
         body = surface if isinstance(surface, BodySurface) and surface.elastic else None
         places, opposite = at[own] + displacement[own], points.opposite.node[own]
         there, has = gaps.exact(zone, places), opposite >= 0
@@ -74,9 +75,9 @@ def displaced(
         found.change[own] = np.where(grooved, 0.0, beyond)
         found.distance[own], found.other[own] = there.gap, other
         if body:
-            sure, pressed = own.copy(), contact.pressed(solution.pressure, solution.displacement)
+            sure, pressed = of_zone.copy(), contact.pressed(solution.pressure, solution.displacement)
             sure[own] = ~tip
-            _see_from_other_side(gaps, zone, points, own, sure, pressed, linear, found)
+            _see_from_other_side(gaps, zone, points, of_zone, sure, pressed, linear, found)
     if points.bonded_ends.any():
         at_tip = _at_tip_of_bond(points, found.motion)
         found.change[at_tip], found.turn[at_tip], found.other[at_tip] = 0.0, 0.0, False

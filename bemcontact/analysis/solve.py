@@ -305,13 +305,15 @@ def assessed(
         if condensation is not None and not certificate.certified:
             said += tuple(sides_of_one_body(condensation.body.problem))
         notes = (*contact.notes, *solution.notes, *said)
-    gap = contact.initial_gap + solution.displacement
+    gap, pressure = contact.initial_gap + solution.displacement, solution.pressure
+    by_point = weights is Weights.TRIBUTARY
+    weighted = pressure * contact.weights if by_point else pressure @ contact.weight_matrix(weights)
     return Result(
         problem=None if condensation is None else condensation.body.problem,
         contact=contact,
         solution=solution,
         weights=weights,
-        objective=float(solution.pressure @ contact.weight_matrix(weights) @ gap),
+        objective=float(weighted @ gap),
         residuals=recomputed,
         certificate=certificate,
         footprint=where,

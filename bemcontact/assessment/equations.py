@@ -87,7 +87,7 @@ class ContactEquations:
         if not self.exact:
             terms = np.abs(q) + np.abs(M) @ y + np.abs(R) @ np.abs(a)
             return q + M @ y + R @ a, len(D) * EPS * terms
-        columns = np.hstack([self.offset_rest[:, None], M, R])
+        columns = np.concatenate([self.offset_rest[:, None], M, R], axis=1)
         delta = exact_remainders(q, -columns, np.concatenate([[1.0], y, a]))
         return delta, 2 * EPS * (np.abs(delta) + np.abs(R) @ np.abs(a))
 

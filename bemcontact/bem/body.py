@@ -122,7 +122,7 @@ class Body:
 
         It is that on the exact curves: the mesh does not decide whether large loads balance.
         """
-        work = np.stack([loading.true_work(self.mesh, motions) for loading in self.loadings], axis=1)
+        work = np.array([loading.true_work(self.mesh, motions) for loading in self.loadings]).T
         total = self.pinned.magnitude
         if self.tools.names:
             work += motions.tools.T @ self.tools.force

@@ -384,7 +384,9 @@ def _boundary(
         traction[part.mesh.elements] = t
     displacement += body.seen.displacement(body.mesh) @ amplitudes
     for element, local, point, vectors in _pressed(body):
-        np.add.at(traction, (element, local), pressure[point, None] * vectors)
+        at, by_point = 3 * element + local, pressure[point]
+        for axis in (0, 1):
+            traction[..., axis] += np.bincount(at, by_point * vectors[:, axis], 3 * len(traction)).reshape(-1, 3)
     return displacement[body.mesh.elements], traction
 
 

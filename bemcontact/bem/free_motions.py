@@ -381,6 +381,8 @@ def _counterclockwise(motions: Array) -> Array:
     if not len(motions):
         return motions
     turns = motions[:, 2::3]
+    if not turns.any():
+        return motions
     turning = abs(turns) > UNSEEN * abs(motions).max(axis=1, initial=UNSEEN, keepdims=True)
     first = turns[np.arange(len(turns)), turning.argmax(axis=1)]
     return np.where(turning.any(axis=1) & (first < 0), -1.0, 1.0)[:, None] * motions

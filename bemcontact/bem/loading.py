@@ -219,7 +219,7 @@ class Loading:
         """Work (k,) in rigid motions [p L] on the exact curves, to round-off: it does not depend on the mesh."""
         (x, y), (force_x, force_y) = (motions.centers[: len(self.true_forces)] - mesh.center).T, self.true_forces.T
         moments = (self.true_moments - (x * force_y - y * force_x)) / motions.radius  # about the centers
-        return motions.of_bodies @ np.stack([force_x, force_y, moments], axis=1).ravel()
+        return motions.of_bodies @ np.array([force_x, force_y, moments]).T.ravel()
 
     def magnitude(self, mesh: Mesh) -> float:
         """Sum of the magnitudes of all loads [p L]."""

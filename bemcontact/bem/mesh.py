@@ -236,25 +236,27 @@ def build(problem: Problem) -> Mesh:
     Middle nodes halve the arc length of an element, or of that of the other body which it faces.
     """
     division, parts = divided(problem), problem.parts
-    edges = [edge for part in parts for edge in part.edges]
+    loops = [loop for part in parts for loop in part.loops]
+    edges = [edge for loop in loops for edge in loop]
     fractions = [division.fractions[edge.name] for edge in edges]
-    counts = [len(own) for own in fractions]
-    nodes = [edge.curve.at(own[:, :2].T.ravel()) for edge, own in zip(edges, fractions, strict=True)]
-    for edge, own in zip(edges, nodes, strict=True):
-        own[0] = edge.start
-    first_of = dict(zip((edge.name for edge in edges), accumulate(counts, initial=0), strict=False))
-    after, m = np.arange(1, sum(counts) + 1), sum(counts)
-    for loop in (loop for part in parts for loop in part.loops):
+    counts, names = [*map(len, fractions)], [edge.name for edge in edges]
+    m, first_of = sum(counts), dict(zip(names, accumulate(counts, initial=0), strict=False))
+    nodes = np.empty((2, m, 2))
+    for edge, own, first in zip(edges, fractions, first_of.values(), strict=True):
+        nodes[:, first : first + len(own)] = edge.curve.at(own[:, :2].T.ravel()).reshape(2, -1, 2)
+        nodes[0, first] = edge.start
+    after = np.arange(1, m + 1)
+    for loop in loops:
         last = loop[-1].name
         after[first_of[last] + len(division.fractions[last]) - 1] = first_of[loop[0].name]
     return Mesh(
-        nodes=np.concatenate([own.reshape(2, -1, 2) for own in nodes], axis=1).reshape(-1, 2),
+        nodes=nodes.reshape(-1, 2),
         elements=elements_of_loops(after),
-        edge=np.repeat(np.arange(len(edges)), counts),
-        edge_names=tuple(edge.name for edge in edges),
+        edge=np.arange(len(edges)).repeat(counts),
+        edge_names=tuple(names),
         fractions=np.concatenate(fractions),
         edge_lengths=tuple(edge.length for edge in edges),
-        part=np.repeat([number for number, part in enumerate(parts) for _ in part.edges], counts),
+        part=np.array([number for number, part in enumerate(parts) for _ in part.edges]).repeat(counts),
         facing={contact: _facing(pairs, first_of, m) for contact, pairs in division.facing.items()},
     )
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bemcontact.arrays import Array, short_svd, successive
+from bemcontact.arrays import Array, BoolArray, short_svd, successive
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
@@ -67,7 +67,7 @@ class RigidMotions:
         """Changes (n, 3) of all gaps by the motions with a, b or c of one, the other two zero, of a body."""
         x, y = ((mesh.nodes[pressures.node] - self.center) / self.radius).T
         along_x, along_y = pressures.change.T
-        moved = np.stack([along_x, along_y, along_y * x - along_x * y], axis=1)
+        moved = np.array([along_x, along_y, along_y * x - along_x * y]).T
         changes, at = np.zeros((points, 3)), successive(pressures.gap)
         if isinstance(at, slice):
             changes[at] = moved
@@ -126,17 +126,23 @@ def free_rigid_motions(mesh: Mesh, held: BoundaryValues, radius: float | None = 
     """
     center, radius = mesh.center, mesh.size / 2 if radius is None else radius
     every = RigidMotions(coefficients=np.eye(3), center=center, radius=radius)
-    node, axis = np.nonzero(held.displacement_given)
-    rows, across = np.zeros((len(node), 3)), 1 - axis
-    rows[np.arange(len(node)), axis] = 1.0
-    rows[:, 2] = (mesh.nodes[node, across] - center[across]) / radius * (axis - across)
+    free = _unheld(held.displacement_given, (mesh.nodes - center) / radius)
     if held.stiffness.any():
-        rows = np.concatenate([rows, _stretched(every, mesh, held.stiffness)])
-    if not len(rows):
-        return every
-    values, vectors = short_svd(rows)
-    free = values <= HELD * max(1.0, values[0])
-    return RigidMotions(coefficients=echelon(vectors[free]), center=center, radius=radius)
+        values, vectors = short_svd(_stretched(every, mesh, held.stiffness) @ free.T)
+        free = vectors[values <= HELD * max([1.0, *values[:1]])] @ free
+    return every if len(free) == 3 else RigidMotions(coefficients=echelon(free), center=center, radius=radius)
+
+
+def _unheld(given: BoolArray, places: Array) -> Array:
+    """Motions (k, 3) without the displacement components (N, 2) that are given at places (N, 2), over the radius.
+
+    A body turns if all given components of x have one y, and those of y one x: about this place.
+    """
+    of_x, of_y = places[given[:, 0], 1], places[given[:, 1], 0]
+    low, high = np.array([(lever.min(), lever.max()) if len(lever) else (0.0, 0.0) for lever in (of_x, of_y)]).T
+    y, x = ((low + high) / 2).tolist()
+    every = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [y, -x, 1.0]])
+    return every[[not len(of_x), not len(of_y), bool((high - low <= HELD).all())]]
 
 
 def _stretched(motions: RigidMotions, mesh: Mesh, stiffness: Array) -> Array:
@@ -154,6 +160,9 @@ def echelon(basis: Array) -> Array:
     spins about its middle has such a translation, for the middle of its nodes is beside it.
     """
     rows, size = basis.copy(), _lengths(basis)
+    if len(rows) < 2:
+        first = (abs(rows) >= SLIGHT * size[:, None]).argmax(axis=1)
+        return rows / np.copysign(size, rows[np.arange(len(rows)), first])[:, None]
     row = 0
     for column in range(basis.shape[1]):
         if row == len(rows):

@@ -222,7 +222,10 @@ def _names(
     instance: object, field: str, what: str, read: Callable[[object, str], tuple[str, ...]] = labels
 ) -> tuple[str, ...]:
     """Read a field of a frozen dataclass as different texts."""
-    names = read(getattr(instance, field), what)
+    given = getattr(instance, field)
+    if type(given) is tuple and not given:
+        return given
+    names = read(given, what)
     if len({*names}) < len(names):
         raise ProblemError(f"{what} must be different from each other; found {', '.join(names)}")
     object.__setattr__(instance, field, names)

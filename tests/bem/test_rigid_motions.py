@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from bemcontact.bem.rigid_motions import FAR, RigidMotions, echelon, toward
+from bemcontact.bem.boundary_values import BoundaryValues
+from bemcontact.bem.mesh import Mesh, elements_of_loops
+from bemcontact.bem.rigid_motions import FAR, RigidMotions, all_rigid_motions, echelon, free_rigid_motions, toward
 
 
 def test_a_motion_is_described_without_warning():
@@ -54,3 +56,27 @@ def test_slight_components_of_motions_are_no_pivots(seed):
     np.testing.assert_allclose(np.linalg.norm(rows, axis=1), 1.0)
     assert np.linalg.svd(rows, compute_uv=False)[-1] > 0.1
     np.testing.assert_allclose(rows @ np.linalg.pinv(basis) @ basis, rows, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_free_motions_are_null_vectors_of_what_is_given(seed: int):
+    """By a singular value decomposition of the displacements that are given, at places that are alike or not."""
+    generator = np.random.default_rng(seed)
+    angles = np.linspace(0, 2 * np.pi, 13)[:-1]
+    nodes = np.round(3 * np.stack([np.cos(angles), np.sin(angles)], axis=1)) + generator.standard_normal(2)
+    elements = elements_of_loops(np.array([1, 2, 3, 4, 5, 0]))
+    mesh = Mesh(nodes=nodes, elements=elements, edge=np.zeros(6, int), edge_names=("rim",))
+    given = np.zeros((12, 2), bool)
+    for axis in generator.choice(2, generator.integers(1, 3), replace=False):  # all on a line, or a few
+        line = abs(nodes[:, 1 - axis] - nodes[generator.integers(12), 1 - axis]) < 1e-6
+        given[:, axis] = line if seed % 2 else generator.random(12) < 0.2
+    held = BoundaryValues(
+        displacement_given=given, displacement=np.zeros((12, 2)), traction_unknown=np.zeros((6, 2), bool),
+        traction=np.zeros((6, 3, 2)), stiffness=np.zeros((6, 3, 2, 2)),
+    )  # fmt: skip
+    motions = free_rigid_motions(mesh, held)
+    every = all_rigid_motions(mesh)
+    rows = every.displacement(nodes)[given]
+    assert len(motions) == 3 - np.linalg.matrix_rank(rows, tol=1e-9)
+    assert np.linalg.norm(rows @ motions.coefficients.T) < 1e-12
+    assert np.linalg.matrix_rank(motions.coefficients) == len(motions)
