@@ -8,9 +8,11 @@ import numpy as np
 import pressure_error
 import pytest
 from finite_elements_pressed import BLOCK, CYLINDER, FILLET, FLAT, HEIGHT, WIDTH
-from speed_of_finite_elements import LEVELS, Point, ratio, reached, targets
+from speed_of_finite_elements import LEVELS, Comparison, Point, ratio, reached, targets
 
 import bemcontact
+from bemcontact.bem import condense as condensing
+from bemcontact.contact.solution import Status
 
 
 @pytest.mark.parametrize("module", [finite_elements_pressed, pressure_error])
@@ -71,6 +73,19 @@ def points(family, *errors):
         Point(family=family, setting=i, unknowns=10 * (i + 1), seconds=2.0**i, error=error, plain=2 * error)
         for i, error in enumerate(errors)
     ]
+
+
+def test_equal_work_begins_at_the_stated_problem(monkeypatch: pytest.MonkeyPatch):
+    """Finite elements set up loads and gaps within their time; so must this program, each time that it is timed."""
+    compared = Comparison(body=CYLINDER, state=boundary_elements_pressed.cylinder, reference=None, end=2.8, unknowns=0,
+                          checked=0.0)  # fmt: skip
+    stated = boundary_elements_pressed.cylinder(5)
+    attempt = compared._by_equal_work(compared._by_boundary_elements("elements, uniform", 5, stated), stated)
+    made, original = [], condensing.body_of
+    monkeypatch.setattr(condensing, "body_of", lambda problem: made.append(problem) or original(problem))
+    for _ in range(2):
+        assert attempt.run().status is Status.SOLVED
+    assert made == [stated, stated]
 
 
 def test_an_error_is_reached_where_all_finer_meshes_have_it():
