@@ -63,10 +63,11 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     if smaller < 1.0:
         D, E, bounds = smaller * D, E / smaller, bounds / smaller
     H, c = D[:, None] * statement.H * D, D * statement.c
-    unit = _near_power(1.0 / (max(largest(H), largest(c)) or 1.0))
+    sizes = largest(H), largest(c), largest(A)
+    unit = _near_power(1.0 / (max(sizes[:2]) or 1.0))
     H *= unit
     c *= unit
-    finite = all(isfinite(largest(part)) for part in (H, c, A, D, E, 1.0 / D, 1.0 / E))
+    finite = isfinite(sum(sizes) + D.dot(1.0 / D) + E.dot(1.0 / E))  # zero times infinity is no number
     if not finite or np.count_nonzero(np.isfinite(bounds)) < present:
         raise ProblemError(
             "the sizes of entries and bounds are too far apart for double precision; choose other units, or write 0 "
@@ -154,7 +155,7 @@ def _smaller_bounds(bounds: Array) -> Array:
     """Size of the smaller nonzero bound of each constraint; 0 where there is none (n + m,)."""
     sizes = np.abs(bounds)
     sizes[sizes == 0.0] = np.inf
-    smaller = np.minimum.reduce(sizes, axis=0)
+    smaller = np.minimum(*sizes)
     smaller[smaller == np.inf] = 0.0
     return smaller
 

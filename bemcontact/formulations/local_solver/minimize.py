@@ -67,7 +67,6 @@ class Restart:
     failed: bool
 
 
-@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # ratio tests divide by slopes that may be zero
 def run_phases(progress: SearchState, sides: Sides) -> tuple[Finding, Inertia]:
     """Repeat both phases until a claim passes its check, or until iterations or attempts are exhausted.
 
@@ -233,6 +232,7 @@ def reduced_inertia(descent: Descent) -> Inertia:
 
 
 @one_thread
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # ratio tests divide by slopes that may be zero
 def minimize_qp(
     H: Any,
     c: ArrayLike,
@@ -304,7 +304,6 @@ def _wanted(working_set: ArrayLike, size: int) -> BoolArray:
     return wanted != 0
 
 
-@np.errstate(over="ignore", invalid="ignore")  # a point that is not finite is no minimizer
 def _result(stated: Statement, scales: Scales, progress: SearchState, finding: Finding, start: Inertia) -> QPResult:
     """The result in the units of the data."""
     n = stated.c.size

@@ -268,13 +268,16 @@ def first_order(
     in the `working` set is active if its bound is as near as rounding.
     """
     statement, n = progress.statement, progress.x.size
-    values = statement.values(progress.x)
+    values = progress.exact_values
     slack, sharp, size = 2.0 * progress.slack, progress.sharp, np.abs(multipliers)
-    feasible = np.count_nonzero(statement.violation(values) <= progress.allowed(sharp)) == slack.size
-    rounding = 4.0 * EPS * (size[:n] + size[n:].dot(statement.absolute[2]))
-    own = progress.terms(size[:0], statement.A[:0])  # multipliers of which more is rounding say nothing
-    rounding = np.minimum(rounding, np.maximum(MOST_ROUNDING * own, progress.zero))
-    stationary = np.abs(progress.gradient - statement.transposed(multipliers)) <= 2.0 * progress.zero + rounding
+    violation, rest = statement.violation(values), np.abs(progress.gradient - statement.transposed(multipliers))
+    feasible = not np.count_nonzero(violation) or bool(np.all(violation <= progress.allowed(sharp)))
+    stationary = largest(rest) <= 2.0 * progress.zero
+    if not stationary:
+        rounding = 4.0 * EPS * (size[:n] + size[n:].dot(statement.absolute[2]))
+        own = progress.terms(size[:0], statement.A[:0])  # multipliers of which more is rounding say nothing
+        rounding = np.minimum(rounding, np.maximum(MOST_ROUNDING * own, progress.zero))
+        stationary = bool(np.all(rest <= 2.0 * progress.zero + rounding))
     below, above = statement.distances(values)
     sides = statement.sides_within(below, above, slack)
     held = sides != 0
@@ -288,14 +291,15 @@ def first_order(
         held[n:] &= statement.absolute[2].dot(np.ones(n)) > 0.0  # a row of zeros holds nothing
     strong = held & (statement.equality | (size > WEAK * zeros))
     active = working | (np.minimum(below, above) <= sharp)
-    tolerated = 2.0 * zeros
-    tolerated[n:] = np.maximum(tolerated[n:], 2.0 * progress.zero)
-    doubtful = False
+    right, doubtful = True, False
     if np.count_nonzero(wrong > 0.0):
+        tolerated = 2.0 * zeros
+        tolerated[n:] = np.maximum(tolerated[n:], 2.0 * progress.zero)
+        right = bool(np.all(wrong <= tolerated))
         likely = np.where(zeros > progress.zero, DOUBT_OF_ROUGH, DOUBT)
         doubtful = bool(np.count_nonzero(wrong > np.fmin(likely * zeros, SEEN * terms())))
     return FirstOrder(
-        holds=feasible and np.count_nonzero(stationary) == n and np.count_nonzero(wrong <= tolerated) == zeros.size,
+        holds=feasible and stationary and right,
         strong=strong,
         weak=held & ~strong & active,
         sides=sides,

@@ -67,17 +67,23 @@ class ReducedHessian:
 
     def _resize(self, size: int) -> None:
         """Set the view on the leading columns."""
-        self.size, self.Z = size, self._columns[:, :size]
+        self.size, self.Z, self._last_slopes = size, self._columns[:, :size], None
+
+    def slopes(self, gradient: Array) -> Array:
+        """Products Zᵀg (k,), computed once for a gradient."""
+        if self._last_slopes is None or self._last_slopes[0] is not gradient:
+            self._last_slopes = gradient, gradient.dot(self.Z)
+        return self._last_slopes[1]
 
     def newton(self, gradient: Array) -> Array:
         """Newton step -Z Zᵀg to the minimizer on the working set."""
-        return -self.Z.dot(gradient.dot(self.Z))
+        return -self.Z.dot(self.slopes(gradient))
 
     def is_stationary(self, gradient: Array, zero: float) -> bool:
         """Whether the reduced gradient is surely below `zero`, by the bound |gᵀZ|² |H|."""
         if self.size == 0:
             return True
-        slopes = gradient.dot(self.Z)
+        slopes = self.slopes(gradient)
         return dot(slopes, slopes) * self._top * gradient.size <= zero**2
 
     def enter(self, direction: Array) -> None:
@@ -103,10 +109,11 @@ class ReducedHessian:
             self.pending = d if length == 1.0 else d / sqrt(length)
             self.curvature = curvature / length if curvature < -rounding else 0.0
 
-    def leave(self, normal: Array) -> Array | None:
+    def leave(self, normal: Array, variable: int | None = None) -> Array | None:
         """Remove the part of the null space along the normal of a constraint that enters the working set: O(n²).
 
-        The result is the direction (n,) by which the span of Z is reduced, if nothing else has changed.
+        The normal may be that of a variable. The result is the direction (n,) by which the span of Z is reduced, if
+        nothing else has changed.
         """
         pending, self.pending = self.pending, None
         if self.size == 0:
@@ -114,7 +121,7 @@ class ReducedHessian:
         if self.size == 1 and pending is None:
             self._resize(0)
             return self._columns[:, 0]
-        along = normal.dot(self.Z)
+        along = normal.dot(self.Z) if variable is None else self.Z[variable].copy()
         length = sqrt(dot(along, along))
         if length == 0.0:
             return None
@@ -140,7 +147,7 @@ class ReducedHessian:
 
     def clear(self, variable: int) -> None:
         """Set the component of a fixed variable to zero in all directions."""
-        self.Z[variable] = 0.0
+        self.Z[variable], self._last_slopes = 0.0, None
         if self.pending is not None:
             self.pending[variable] = 0.0
 
@@ -296,12 +303,12 @@ class Descent:
         """Solve the equations of the working set again from the data, by two steps of refinement, or a few more."""
         progress, working, hessian, x = self.progress, self.working, self.hessian, self.progress.x
         self._moved = 0.0
-        for sweep in range(REFINEMENTS if hessian.size else 1):
+        for _ in range(REFINEMENTS if hessian.size else 1):
             x = working.onto(x)
             if hessian.size:
                 step = hessian.newton(working.reduced(progress.statement.bent(x) + progress.statement.c))
                 x, self._moved = x + step, largest(step)
-                if sweep and largest(step) <= 1e-14 * max(1.0, largest(x)):
+                if self._moved <= 1e-14 * max(1.0, largest(x)):
                     break
         progress.place(x)
         once = working.multipliers(progress.gradient, refined=True)
@@ -315,14 +322,17 @@ class Descent:
         Nearly dependent rows have multipliers with large rounding, but along these directions much of it cancels.
         """
         working, n = self.working, self.progress.x.size
-        terms = self.progress.terms(self.multipliers[n:], working.W)
-        fine = np.maximum(FINE * self.progress.options.optimality_tolerance, 100.0 * EPS) * terms
-        wrong = (working.signs[:n] * self.multipliers[:n] > fine).nonzero()[0]
-        if wrong.size == 0 or working.size == 0:
+        excess = working.signs[:n] * self.multipliers[:n]
+        if working.size == 0 or excess.item(excess.argmax()) <= 0.0:
+            return False
+        terms, reach = self._terms_and_reach()
+        fine = max(FINE * self.progress.options.optimality_tolerance, 100.0 * EPS) * terms
+        wrong = (excess > fine).nonzero()[0]
+        if wrong.size == 0:
             return False
         released = working.N.dot(working.W[:, wrong])
         released[wrong, np.arange(wrong.size)] -= 1.0
-        lost = 100.0 * self.progress.lost(terms, self._reach(terms)).dot(np.abs(released))
+        lost = 100.0 * self.progress.lost(terms, reach).dot(np.abs(released))
         self.zeros[wrong] = np.minimum(self.zeros[wrong], np.maximum(fine[wrong], lost) + self._refinement[wrong])
         return True
 
@@ -428,6 +438,8 @@ class Descent:
         # way to the point too. A change of the rows moves the point by N and by a Newton step. Terms and rows change
         # with irregular phases, since with signs the movements by several rows of whole numbers can cancel.
         working, hessian, size = self.working, self.hessian, self.progress.traveled
+        if not working.size and not hessian.size:
+            return np.zeros(size.size)
         Z = hessian.Z
         moved = Z.dot(Z.T.dot(terms[:, None] * _phases(size.size)))
         if working.size:
@@ -452,7 +464,7 @@ class Descent:
             if normal is None:
                 self.broken = True
             else:
-                removed = hessian.leave(normal)
+                removed = hessian.leave(normal, added if added < normal.size else None)
                 if self._edges and removed is not None:
                     self._edges.follow_entry(removed)
                 else:

@@ -72,6 +72,7 @@ class SearchState:
     changes: int = 0
     stalled: int = 0
     lines: list[LogLine] = field(default_factory=list)
+    _usual: tuple[Array, Array, Array] | None = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         statement, options = self.statement, self.options
@@ -79,6 +80,7 @@ class SearchState:
         self._tolerance, self._rounding = options.optimality_tolerance, 100.0 * EPS * statement.row_sum
         self.long = options.feasibility_tolerance / PARALLEL
         self._slack = options.feasibility_tolerance * np.maximum(1.0, statement.bound_size)
+        self._least_slack, self._usual = options.feasibility_tolerance, None
         chosen = options.max_iterations
         self.limit = 1000 + 20 * statement.lower.size if chosen is None else chosen
         self._traveled, self._passed, self._seen, self.far = np.zeros(self.x.size), [], None, 0.0
@@ -105,6 +107,11 @@ class SearchState:
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
 
     @property
+    def exact_values(self) -> Array:
+        """[x; A x] of the point, not of steps to it (n + m,)."""
+        return self.statement.values(self.x) if self._steps else self.values
+
+    @property
     def violation(self) -> Array:
         """`Statement.violation` of the values, computed once for a point."""
         if self._measured is not self.values:
@@ -114,6 +121,8 @@ class SearchState:
     @property
     def worn(self) -> bool:
         """Whether the point is much nearer than others before it, whose rounding counts."""
+        if self.far <= WORN:
+            return False
         return bool(np.count_nonzero(self.traveled > WORN * np.maximum(np.abs(self.x), 1.0)))
 
     @property
@@ -145,7 +154,7 @@ class SearchState:
 
     def tighten(self) -> None:
         """Reduce the tolerance of the constraints, after a claim failed."""
-        self._slack = FINER * self._slack
+        self._slack, self._least_slack, self._usual = FINER * self._slack, FINER * self._least_slack, None
         self.place(self.x)
 
     @property
@@ -207,9 +216,20 @@ class SearchState:
         size = np.abs(x)
         self.far = max(self.far, sqrt(dot(size, size)))
         self._placed = self.statement.terms(size)
-        self.slack = np.maximum(self._slack, 10.0 * EPS * self._placed)
-        self.lowest, self.highest = self.statement.lower - self.slack, self.statement.upper + self.slack
+        self._allow()
         self.look()
+
+    def _allow(self) -> None:
+        """Set the slacks, and the bounds with them; they are the usual ones where rounding is smaller."""
+        small = 10.0 * EPS * self._placed.item(self._placed.argmax()) <= self._least_slack
+        if self._usual is not None and small:
+            self.slack, self.lowest, self.highest = self._usual
+            return
+        lower, upper = self.statement.lower, self.statement.upper
+        self.slack = np.maximum(self._slack, 10.0 * EPS * self._placed)
+        self.lowest, self.highest = lower - self.slack, upper + self.slack
+        if small:
+            self._usual = self.slack, self.lowest, self.highest
 
     def move(self, along: Array, step: float, length: float) -> None:
         """Take a step; `along` is [d; A d], `length` that of the direction. The gradient waits for `look`."""

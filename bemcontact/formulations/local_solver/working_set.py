@@ -153,6 +153,8 @@ class WorkingSet:
     def refined(self, multipliers: Array) -> Array:
         """Multipliers (n + r,) after one more refinement; the change shows the rounding that they had."""
         n = self.free.size
+        if self.size == 0:
+            return multipliers
         correction = self.inverse.against(multipliers[:n])
         return multipliers + np.concatenate([-correction.dot(self.W), correction])
 
@@ -394,10 +396,12 @@ def wrong_sign(
         n, ids = working.free.size, working.ids
         of_temporary = np.where(ids == TEMPORARY, np.inf, np.abs(multipliers[n:]))
         wrong[n:] = np.where(ids < 0, of_temporary, wrong[n:])
-    if not isinstance(zero, float):
-        wrong = np.where(wrong > zero, wrong, -np.inf)
-        zero = 0.0
     place = int(wrong.argmax())
+    if not isinstance(zero, float):
+        if wrong.item(place) <= 0.0:
+            return None
+        wrong = np.where(wrong > zero, wrong, -np.inf)
+        place, zero = int(wrong.argmax()), 0.0
     if wrong.item(place) <= zero:
         return None
     if least_index:

@@ -5,10 +5,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bemcontact.formulations.local_solver.minimize import minimize_qp
-from bemcontact.formulations.local_solver.phase_two import Descent, Ending
+from bemcontact.formulations.local_solver.phase_two import Descent, Ending, ReducedHessian
 from bemcontact.formulations.local_solver.progress import SearchState
 from bemcontact.formulations.local_solver.result import QPOptions, QPStatus
-from bemcontact.formulations.local_solver.statement import read_statement
+from bemcontact.formulations.local_solver.statement import EPS, read_statement
 from bemcontact.formulations.local_solver.working_set import WorkingSet
 
 INF = np.inf
@@ -65,3 +65,39 @@ def test_a_direction_refused_by_rounding_leaves_no_minimizer():
         H, [-0.27, 0.0], [[-6.0, -4.0], [-0.27, 0.0]], np.zeros(2), np.full(2, INF), working_set=[0, 0, -1, -1]
     )
     assert result.status in (QPStatus.UNBOUNDED, QPStatus.UNDECIDED)
+
+
+def test_newton_steps_on_one_gradient_follow_the_working_set():
+    """The step leads to the minimizer on what is free, by its equations, also when the gradient is as before."""
+    rng = np.random.default_rng(0)
+    n = 5
+    B, gradient = rng.standard_normal((n, n)), rng.standard_normal(n)
+    H = B @ B.T + np.eye(n)
+    statement = read_statement(H, gradient, None, None, None, -np.ones(n), np.ones(n))
+    working = WorkingSet(statement, np.zeros(n, dtype=np.int8))
+    hessian, free = ReducedHessian(statement, working.null_space), [*range(n)]
+    for variable in (3, 0, 2):
+        expected = np.zeros(n)
+        expected[free] = -np.linalg.solve(H[np.ix_(free, free)], gradient[free])
+        np.testing.assert_allclose(hessian.newton(gradient), expected, atol=1e-12)
+        normal = working.add(variable, -1)
+        assert normal is not None
+        hessian.leave(normal, variable)
+        hessian.clear(variable)
+        free.remove(variable)
+        expected[:] = 0.0
+        expected[free] = -np.linalg.solve(H[np.ix_(free, free)], gradient[free])
+        np.testing.assert_allclose(hessian.newton(gradient), expected, atol=1e-12)
+
+
+def test_tolerances_of_constraints_grow_far_away_alone():
+    """A row's tolerance is the stated one times its bound, or ten units in the last place of its terms."""
+    statement = read_statement(np.eye(2), np.zeros(2), [[1.0, -1.0]], [-5.0], [7.0], None, None)
+    progress = SearchState(statement=statement, options=QPOptions(), unit=1.0, x=np.zeros(2))
+    for x, row in ((0.0, 5e-9), (1e9, 20.0 * EPS * 1e9), (1.0, 5e-9), (1e9, 20.0 * EPS * 1e9)):
+        progress.place(np.full(2, x))
+        np.testing.assert_allclose(progress.slack, [max(1e-9, 10.0 * EPS * x)] * 2 + [row])
+        np.testing.assert_allclose(progress.highest[2] - 7.0, row, rtol=1e-5)
+    progress.place(np.zeros(2))
+    progress.tighten()
+    np.testing.assert_allclose(progress.slack, [1e-11, 1e-11, 5e-11])
