@@ -34,6 +34,7 @@ def pytest_collection():
         return (yield)
     finally:
         gc.freeze()
+        gc.set_threshold(20_000, 20, 20)  # the rest of the garbage is searched for less often, too
         gc.enable()
 
 

@@ -217,7 +217,7 @@ def test_contact_that_narrows_without_end_has_an_answer_that_does_not_hold(size:
     assert result.accuracy.reason == "the error did not halve in 4 passes"
 
 
-@pytest.mark.parametrize(("x", "turns"), [(0.0, False), (1.0, True)])
+@pytest.mark.parametrize(("x", "turns"), [(0.0, False), pytest.param(1.0, True, marks=pytest.mark.slow)])
 def test_tools_that_are_free_have_error_bars_of_where_they_are(x: float, turns: bool):
     """A roller or a punch on a pad: where it goes and how it turns at 1 % and 0.1 % differ by less than both bars."""
     corners = {

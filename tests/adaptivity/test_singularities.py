@@ -84,7 +84,7 @@ def test_histories_are_kept_by_place_and_case():
     assert watch._history(ContactPlace(run=0, zone="z", position=1e-3), 0, 1e-6) is not first
 
 
-@pytest.mark.parametrize("refine", [1, 2])
+@pytest.mark.parametrize("refine", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_two_meshes_tell_the_infinite_pressure_of_a_punch_on_a_stated_mesh(refine: int):
     """K = P/(π √(2a)) at the edge of a punch of half-width a on a half-plane (Johnson 1985, section 2.8)."""
     punch = load(GALLERY / "flat_punch.yaml", variant="stated mesh").refined(refine)
@@ -96,7 +96,14 @@ def test_two_meshes_tell_the_infinite_pressure_of_a_punch_on_a_stated_mesh(refin
     assert accuracy.met
 
 
-@pytest.mark.parametrize("name", ["hertz_small", "three_zones", "beam_on_two_supports"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "hertz_small",
+        pytest.param("three_zones", marks=pytest.mark.slow),
+        pytest.param("beam_on_two_supports", marks=pytest.mark.slow),
+    ],
+)
 def test_no_pressure_of_smooth_contact_is_infinite_on_a_stated_mesh(name: str):
     stated = load(GALLERY / f"{name}.yaml", variant="stated mesh").model_copy(update={"accuracy": 0.01})
     assert not any(accuracy.infinite for accuracy in meshed(stated).accuracies)

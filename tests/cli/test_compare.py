@@ -148,7 +148,7 @@ def test_a_mistake_in_the_spec_is_reported_with_its_line(block: Path):
 
 
 def test_compare_judges_the_references_of_the_case():
-    answer = run("compare", PRESS, "--case", "edge of the kern", "--json", "-")
+    answer = run("compare", PRESS, "--variant", "stated mesh", "--case", "edge of the kern", "--json", "-")
     assert answer.exit_code == 0, answer.stderr
     (level,) = json.loads(answer.stdout)["levels"]
     assert {score["reference"] for score in level["scores"]} == {"edge of the kern", "press", "table"}

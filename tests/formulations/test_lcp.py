@@ -46,6 +46,10 @@ def test_lemke_takes_over_where_the_active_set_cycles():
     np.testing.assert_allclose(np.minimum(result.z, result.w), 0, atol=1e-14)
 
 
+GRID = np.array(list(itertools.product(np.linspace(0, 3, 7), repeat=4)))
+"""Points z of four coordinates."""
+
+
 @settings(max_examples=100, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_any_matrix_gives_a_solution_or_none_but_never_a_wrong_one(seed):
@@ -57,8 +61,7 @@ def test_any_matrix_gives_a_solution_or_none_but_never_a_wrong_one(seed):
     if result.status is Status.SOLVED:
         np.testing.assert_allclose(np.minimum(result.z, result.w), 0, atol=1e-10)
     if result.status is Status.INFEASIBLE:
-        corners = np.array(list(itertools.product(np.linspace(0, 3, 7), repeat=n)))
-        assert ((q + corners @ M.T).min(axis=1) < 0).all()
+        assert ((q + GRID @ M.T).min(axis=1) < 0).all()
 
 
 @pytest.mark.parametrize(("M", "q"), [(np.ones((2, 3)), np.ones(2)), (np.diag([1.0, np.inf]), np.ones(2))])

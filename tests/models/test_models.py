@@ -75,7 +75,7 @@ def test_each_variant_is_certified_by_each_formulation(name: str, variant: str, 
     assert result(name, formulation, variant).certified
 
 
-@pytest.mark.parametrize("refine", [1, 4])
+@pytest.mark.parametrize("refine", [1, pytest.param(4, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", MODELS)
 def test_references_are_met_by_each_formulation(name: str, refine: int):
     for answer in answers(name, refine):

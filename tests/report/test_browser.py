@@ -174,6 +174,7 @@ def test_a_long_number_is_not_cut_on_a_telephone(chromium: Browser, written: Cal
     assert cut == 0
 
 
+@pytest.mark.slow
 def test_a_long_note_of_a_study_makes_no_tall_row_and_the_table_fits_on_paper(chromium: Browser, tmp_path: Path):
     """Six columns leave no room for a note of 30 words; it had a column of one word, and paper cut it off."""
     outputs = tuple(f"output_{number}" for number in range(5))  # as many as are shown by default

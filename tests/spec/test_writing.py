@@ -12,7 +12,9 @@ from bemcontact.problems import Arc, Boundary, Circle, Condition, Field, Line, M
 MODELS = sorted((Path(__file__).parents[2] / "models").rglob("*.yaml"))
 
 
-@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.stem)
+@pytest.mark.parametrize(
+    "model", [pytest.param(it, id=it.stem, marks=[pytest.mark.slow] * (it.stem == "roller_bearing")) for it in MODELS]
+)
 def test_a_model_is_the_same_as_objects_mapping_and_text(model):
     problem = bemcontact.load(model)
     stated = problem.to_dict()

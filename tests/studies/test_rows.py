@@ -29,7 +29,7 @@ def test_a_result_that_is_not_certified_says_so():
 
 def test_a_row_says_why_it_has_no_peak():
     """Below a flat punch the pressure is infinite at both edges; it is proved all the same."""
-    result = bemcontact.solve(bemcontact.load(MODELS / "gallery" / "flat_punch.yaml"))
+    result = bemcontact.solve(bemcontact.load(MODELS / "gallery" / "flat_punch.yaml"), accuracy=0.1)
     row = row_of(0, {}, result)
     assert (row.holds, row.outputs["peak"].value) == (True, None)
     assert row.message == "the peak pressure is infinite in punch"

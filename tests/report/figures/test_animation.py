@@ -29,6 +29,13 @@ def rolling() -> Animation:
     return figures.draw_animation(followed())
 
 
+@pytest.fixture
+def few_frames(monkeypatch: pytest.MonkeyPatch) -> int:
+    """Animations of five frames, for what is the same of each frame."""
+    monkeypatch.setattr("bemcontact.report.figures.animation.FRAMES", 5)
+    return 5
+
+
 def words_of(animation: Animation) -> list[str]:
     return [item.get_text() for artists in animation.frames for item in artists[-1:] if isinstance(item, Text)]
 
@@ -73,15 +80,15 @@ def test_the_svg_shows_one_frame_after_another_and_the_last_one_on_paper(rolling
 
 
 @pytest.mark.slow
-def test_files_are_written_by_their_endings_and_others_are_refused(tmp_path: Path):
+def test_files_are_written_by_their_endings_and_others_are_refused(few_frames: int, tmp_path: Path):
     path = followed()
     path.animate(tmp_path / "path.gif")
     with Image.open(tmp_path / "path.gif") as film:
         seconds = [frame.info["duration"] / 1000 for frame in ImageSequence.Iterator(film)]
-    assert seconds == [SHOWN] * (FRAMES - 1) + [HELD]
+    assert seconds == [SHOWN] * (few_frames - 1) + [HELD]
     done = []
     figures.save_animation(path, tmp_path / "path.SVG", lambda now, of: done.append((now, of)))
-    assert done == [(now, FRAMES) for now in range(1, FRAMES + 1)]
+    assert done == [(now, few_frames) for now in range(1, few_frames + 1)]
     assert (tmp_path / "path.SVG").read_bytes() == figures.animated_graphic(figures.draw_animation(path))
     with pytest.raises(OptionError, match=r"path\.mp4: .* an animation must end in \.gif or \.svg"):
         path.animate("path.mp4")
@@ -109,6 +116,7 @@ def test_several_contacts_have_one_scale_and_their_names():
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_frames")
 def test_an_infinite_peak_is_written_as_such():
     animation = figures.draw_animation(bemcontact.follow(punch(), "conditions.top.pressure", 1.0))
     assert all("\npeak pressure infinite in foot\n" in words for words in words_of(animation))
@@ -116,6 +124,7 @@ def test_an_infinite_peak_is_written_as_such():
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_frames")
 def test_a_peak_is_infinite_only_where_something_presses():
     """A block whose top is held comes down on a punch: it has no pressure before it touches."""
     held = {"left": {"displacement": {"x": 0}}, "top": {"displacement": {"y": 0}}}

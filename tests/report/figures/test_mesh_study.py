@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable
+from functools import cache
 from xml.etree import ElementTree
 
 import numpy as np
@@ -72,13 +73,18 @@ def test_convergence_is_drawn_to_the_limit_with_its_order():
     assert label.endswith(f"order {asymmetry.orders[-1]:.2g}")
 
 
+@cache
+def pictures_of(study: Callable[[], MeshStudy]) -> dict[str, Figure]:
+    return figures.figures_of(study())
+
+
 @pytest.mark.slow
 def test_each_study_has_its_pictures():
-    assert {"problem", "pressure", "gap", "deformed"} <= figures.figures_of(on_one_mesh()).keys()
-    assert "convergence" in figures.figures_of(on_three_meshes())
-    assert "difference" in figures.figures_of(of_many_settings())
+    assert {"problem", "pressure", "gap", "deformed"} <= pictures_of(on_one_mesh).keys()
+    assert "convergence" in pictures_of(on_three_meshes)
+    assert "difference" in pictures_of(of_many_settings)
     for study in (without_a_body, without_contact, not_unique):
-        assert not {"problem", "deformed", "convergence"} & figures.figures_of(study()).keys()
+        assert not {"problem", "deformed", "convergence"} & pictures_of(study).keys()
 
 
 @pytest.mark.slow
@@ -89,7 +95,7 @@ def test_each_study_has_its_pictures():
 )
 def test_pictures_are_the_same_each_time_and_light_enough(study: Callable[[], MeshStudy], again: set[str] | None):
     """A second time are drawn all of the first study, and of the others what it has not."""
-    first = {name: figures.vector_graphic(figure) for name, figure in figures.figures_of(study()).items()}
+    first = {name: figures.vector_graphic(figure) for name, figure in pictures_of(study).items()}
     second = figures.figures_of(study())
     for name in second if again is None else again:
         assert figures.vector_graphic(second[name]) == first[name], name

@@ -36,16 +36,22 @@ def found() -> CaseResults:
     return not_met(bemcontact.solve_cases(made(FREE, **FREE_CASES)))
 
 
-def case_axes(cases: CaseResults) -> tuple[list[Axes], list[Axes]]:
-    """The pictures of the contact of load cases, and the panels of pressures."""
-    axes = figures.figure_of(cases).axes
+@cache
+def figure_of_found() -> Figure:
+    """Tests leave it as it is."""
+    return figures.figure_of(found())
+
+
+def case_axes(cases: CaseResults, figure: Figure | None = None) -> tuple[list[Axes], list[Axes]]:
+    """The pictures of the contact of load cases, and the panels of pressures; of a new figure, if none is given."""
+    axes = (figure or figures.figure_of(cases)).axes
     panels = [item for item in axes if item.get_ylabel().startswith("pressure")]
     return [item for item in axes if item not in panels][: len(shown_cases(cases))], panels
 
 
 def test_each_case_has_its_picture_and_its_curves():
     """A picture with the name and the peak of each; in each panel the curves of all, and the largest of all."""
-    contacts, panels = case_axes(found())
+    contacts, panels = case_axes(found(), figure_of_found())
     results = found().results
     assert [axes.get_title(loc="left").split("\n")[0] for axes in contacts] == [*results]
     first = next(iter(results.values())).contact
@@ -95,7 +101,7 @@ NO_UNITS = Units()
 
 
 def test_title_states_both_verdicts():
-    title = " ".join(figures.figure_of(found()).get_suptitle().split())
+    title = " ".join(figure_of_found().get_suptitle().split())
     assert title == f"free block: all load cases; {in_short(case_verdicts(found()))}"
     assert "mesh: not met, error about " in title
 
