@@ -102,14 +102,12 @@ def minimize_convex(
     equilibrate: bool = True,
     leave_point: bool = False,
     as_stated: bool = False,
-    factors: str = "auto",
 ) -> Answer:
     """Solve a convex cvxpy problem; its status and values are set as by its own `solve`, which has coarser tolerances.
 
     Rows and columns are scaled (`equilibrate`), unless the problem is dimensionless. `ProblemError` if a parameter has
     no value. `SolverError` if Clarabel cannot state the problem, or no attempt is an answer; with `leave_point` the
     best point is left as an inaccurate one. With `as_stated` the constraints are checked as they were written, too.
-    `factors` is what Clarabel names `direct_solve_method`.
     """
     import cvxpy as cp
 
@@ -124,7 +122,7 @@ def minimize_convex(
         with warnings.catch_warnings(action="ignore", category=UserWarning):  # the status says the same
             problem.unpack_results(unscaled_end(end.solution, end.status, end.scaling), chain, inverse)
 
-    ends = _ends(data, max_iterations, equilibrate=equilibrate, factors=factors)
+    ends = _ends(data, max_iterations, equilibrate=equilibrate)
     if as_stated:
         ends = (_as_stated(end, problem, put) for end in ends)
     end = _best_end(ends, max_iterations)
@@ -212,7 +210,7 @@ def _terms(part: Any) -> float:
     return max(size_of(size), AT_ONCE)
 
 
-def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool, factors: str) -> Iterator[_End]:
+def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool) -> Iterator[_End]:
     """Make the attempts. A point of another scaling is judged in the first one too, where sizes are one.
 
     A proof has to hold in each scaling: what is small beside the numbers of one may be all there is in another.
@@ -225,8 +223,7 @@ def _ends(data: dict[str, Any], max_iterations: int | None, *, equilibrate: bool
             chosen = costly()
         elif attempt.rescaled:
             chosen = (data, Scaling()) if equilibrate else equilibrated(data)
-        settings = {**attempt.settings, "direct_solve_method": factors}
-        solution, progress = _solve(chosen[0], settings, max_iterations or ITERATIONS)
+        solution, progress = _solve(chosen[0], attempt.settings, max_iterations or ITERATIONS)
         status, residual = _judged(chosen[0], solution)
         others = [first, costly()] if status in RAYS else [first]
         status, residual = max(

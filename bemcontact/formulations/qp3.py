@@ -31,10 +31,6 @@ SLOW = (
     "Clarabel is slow for so many contact points: the direct solver is some hundred times faster, and the solver "
     "piqp a few times"
 )
-FEW_MOTIONS = 1
-"""Number of rigid motions up to which Clarabel's order of elimination fills nothing: each row of a gap is a block by
-itself. Simple factors (QDLDL) then take 60 % of the time of those by blocks (faer), which with more motions take half.
-"""
 SLIGHT = 1e-2
 """Negative part of a Hessian, relative to its largest eigenvalue, that is attributed to the mesh."""
 
@@ -203,10 +199,7 @@ def _minimized(scaled: ScaledContact, work: Objective, options: SolveOptions) ->
         if options.solver is ConvexSolver.PIQP:
             answer = minimize_by_piqp(program, options.max_iterations)
         else:
-            factors = "qdldl" if k <= FEW_MOTIONS else "auto"
-            answer = minimize_convex(
-                program, options.max_iterations, equilibrate=False, leave_point=True, factors=factors
-            )
+            answer = minimize_convex(program, options.max_iterations, equilibrate=False, leave_point=True)
     except SolverError as error:
         raise SolverError(
             f"{NAMES[options.solver]} found no solution of QP3; check the mesh for very short elements, or solve the "

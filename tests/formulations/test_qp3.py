@@ -255,13 +255,3 @@ def test_clarabel_says_where_it_is_slow(monkeypatch):
     monkeypatch.setattr(qp3, "MANY_POINTS", 9)
     assert qp3.SLOW in qp3.solve(random_contact(1, 9, 0)).notes
     assert qp3.SLOW not in qp3.solve(random_contact(1, 8, 0)).notes
-
-
-@pytest.mark.parametrize("most", [0, 3])
-@pytest.mark.parametrize("k", [1, 2])
-def test_factors_do_not_change_the_minimum(monkeypatch: pytest.MonkeyPatch, k: int, most: int):
-    """It is the contact state, which is the only one, by QDLDL and by faer."""
-    monkeypatch.setattr(qp3, "FEW_MOTIONS", most)
-    contact = random_contact(5, 90, k)
-    expected = complementarity.solve(contact).pressure
-    assert qp3.solve(contact, UNPOLISHED).pressure == pytest.approx(expected, abs=1e-6 * expected.max())
