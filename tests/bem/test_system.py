@@ -68,7 +68,7 @@ def on_springs(values: BoundaryValues, u: np.ndarray, mesh: Mesh) -> BoundaryVal
     return replace(values, stiffness=K, traction=values.traction + np.einsum("mkij,mkj->mki", K, u[mesh.elements]))
 
 
-@pytest.mark.parametrize("by_numba", [False, True])
+@pytest.mark.parametrize("by_numba", [False, pytest.param(True, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("conditions", ["traction", "one edge clamped", "clamp beside roller", "rollers"])
 @pytest.mark.parametrize("name", MESHES)
 def test_constant_stress_on_springs_is_exact(name, conditions, by_numba):
