@@ -350,6 +350,8 @@ def _end(path: _Path, last: int, step: int) -> float:
     if len(opened) == 1:
         return (at + nearest) / 2
     slope, value = _line(path.arc[opened] - at, path.gap[opened] ** (2 / 3))
+    if slope == 0.0:  # the gap grows by rounding alone
+        return (at + nearest) / 2
     return min(max(at - value / slope, min(at, nearest)), max(at, nearest))
 
 
@@ -371,7 +373,7 @@ def _end_rate(path: _Path, rate: Array, last: int, step: int) -> float | None:
     arc, gap = path.arc[opened] - path.arc[last], path.gap[opened]
     slope, value = _line(arc, gap ** (2 / 3))
     slope_rate, value_rate = _line(arc, 2 / 3 * gap ** (-1 / 3) * rate[opened])
-    free = 0 < -value / slope / arc[0] < 1
+    free = slope != 0.0 and 0 < -value / slope / arc[0] < 1
     return float((value * slope_rate / slope - value_rate) / slope) if free else 0.0
 
 

@@ -23,7 +23,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, ComplexArray, IntArray
 from bemcontact.bem import reference_element
-from bemcontact.bem.kernels import SMOOTH_ORDER, Root, element_coefficients
+from bemcontact.bem.kernels import SMOOTH_ORDERS, Root, element_coefficients
 from bemcontact.bem.reference_element import MONOMIALS, bernstein_parameter, gauss_legendre
 
 STRAIGHT = 1e-9
@@ -70,7 +70,7 @@ def _smooth_orders(c1: ComplexArray, c2: ComplexArray, r: ComplexArray) -> IntAr
     curved = abs(c2) > STRAIGHT * abs(c1)
     rho = np.full(len(r), np.inf)
     rho[curved] = bernstein_parameter(-c1[curved] / c2[curved] - r[curved])
-    return np.append(reference_element.ORDERS, 4 * SMOOTH_ORDER)[reference_element.tier(rho)]
+    return SMOOTH_ORDERS[reference_element.tier(rho)]
 
 
 def _split_off(c1: ComplexArray, c2: ComplexArray, root: Root, order: int) -> GradientIntegrals:

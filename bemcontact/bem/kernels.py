@@ -35,8 +35,8 @@ from bemcontact.bem.reference_element import (
     values,
 )
 
-SMOOTH_ORDER = 24
-"""A quarter of the Gauss points beside a second root, for the smooth remainder after the nearest one was split off."""
+SMOOTH_ORDERS = np.append(ORDERS, 96)
+"""Gauss points for what is left after the nearest root was split off, by the rule that the second root needs."""
 FAR_ROOT = 100.0
 """Distance from which the second root counts as far away."""
 
@@ -316,7 +316,7 @@ def _order_beside(c1: ComplexArray, c2: ComplexArray, r: ComplexArray) -> int:
     curved = abs(c2) > abs(c1) / FAR_ROOT
     second = -c1[curved] / c2[curved] - r[curved]
     rho = bernstein_parameter(second).min(initial=FAR_ROOT)
-    return int(np.append(ORDERS, 4 * SMOOTH_ORDER)[tier(rho)])
+    return int(SMOOTH_ORDERS[tier(rho)])
 
 
 def _turn_moments(

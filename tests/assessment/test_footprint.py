@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bemcontact.assessment.footprint import Footprint, footprint
+from bemcontact.assessment.footprint import Footprint, end_rates, footprint
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 
@@ -51,6 +51,19 @@ def along_x(arc: np.ndarray, start: float, end: float) -> tuple[CondensedContact
     """Contact from `start` to `end` on the x axis; outside the gap is s^(3/2) of the distance: exact for the line."""
     outside = np.maximum(np.maximum(start - arc, arc - end), 0.0)
     return state(np.column_stack([arc, 0 * arc]), arc, (outside == 0) * 1.0, outside**1.5)
+
+
+def test_contact_ends_half_way_where_the_gap_jumps_and_grows_by_rounding_alone():
+    """By a last digit that is gone in δ^(2/3), so that its line is level; a gap that does not grow ends there too."""
+    arc = np.arange(4.0)
+    gaps = 1.5 + np.arange(20) * np.finfo(float).eps
+    lost = np.flatnonzero((gaps[1:] > gaps[:-1]) & (gaps[1:] ** (2 / 3) == gaps[:-1] ** (2 / 3)))[0]
+    for beyond in (gaps[lost : lost + 2], gaps[[lost, lost]]):
+        gap = np.concatenate([[0.0, 0.0], beyond])
+        contact, solution = state(np.column_stack([arc, 0 * arc]), arc, (arc < 2) * 1.0, gap)
+        (interval,) = footprint(contact, solution).intervals
+        assert (interval.start_arc, interval.end_arc) == (0.0, 1.5)
+        assert end_rates(contact, solution, np.zeros(4)) == ((0.0, 0.0),)
 
 
 def test_end_is_the_zero_of_the_line_through_the_gap():
