@@ -19,10 +19,17 @@ from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.contact import setting_of, sketch_contact
 from bemcontact.report.figures.load_cases import close_zone
-from bemcontact.report.figures.page import BLACK, name_axis, new_page, plain, short_label, without_glyph_warnings
+from bemcontact.report.figures.page import (
+    BLACK,
+    name_axis,
+    new_page,
+    plain,
+    settle,
+    short_label,
+    without_glyph_warnings,
+)
 from bemcontact.report.figures.path import draw_peaks, draw_resultants
 from bemcontact.report.figures.problem import largest_traction
-from bemcontact.report.figures.symbols import settle
 from bemcontact.report.figures.vector_graphic import vector_graphic
 from bemcontact.report.formatting import number
 

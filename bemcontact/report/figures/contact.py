@@ -28,6 +28,7 @@ from bemcontact.report.figures.page import (
     name_axis,
     pieces_of,
     plain,
+    settle,
     short_label,
     without_glyph_warnings,
     wrapped,
@@ -42,7 +43,7 @@ from bemcontact.report.figures.problem import (
 )
 from bemcontact.report.figures.stress import fill_with_stress
 from bemcontact.report.figures.surfaces import Surface, surfaces_of
-from bemcontact.report.figures.symbols import BACKING, Name, covered_by, draw_arrows, draw_ground, place_names, settle
+from bemcontact.report.figures.symbols import BACKING, Name, covered_by, draw_arrows, draw_ground, place_names
 from bemcontact.report.formatting import with_unit
 
 VISIBLE = 0.005

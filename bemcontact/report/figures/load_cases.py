@@ -29,6 +29,7 @@ from bemcontact.report.figures.page import (
     new_page,
     pieces_of,
     plain,
+    settle,
     short_label,
     wrapped,
 )
@@ -42,7 +43,6 @@ from bemcontact.report.figures.result import (
     show_around,
 )
 from bemcontact.report.figures.stress import SAME, add_bar, color_scale, fill_body
-from bemcontact.report.figures.symbols import settle
 from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import case_verdicts
 

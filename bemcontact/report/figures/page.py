@@ -16,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis, XAxis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as MplPath
 from matplotlib.text import Text
@@ -34,6 +35,9 @@ FORMATS = (".png", ".svg", ".pdf")
 
 DATES = {"svg": "Date", "pdf": "CreationDate"}
 """Format -> the key of its metadata that would make each file another."""
+
+NO_LAYOUT = {"figure.autolayout": False, "figure.constrained_layout.use": False}
+"""Settings with which matplotlib leaves axes where they are."""
 
 # The palette of Okabe and Ito, which color-blind people can tell apart.
 BLACK, BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = (
@@ -63,23 +67,37 @@ def save(figure: Figure, path: Path) -> None:
     ensure_known_format(path)
     ending = path.suffix.lower()[1:]
     undated = {DATES[ending]: None} if ending in DATES else {}
-    picture = file_content(figure, {}, format=ending, dpi=160, pad_inches=0.15, metadata=undated)
+    picture = file_content(figure, {}, 0.15, format=ending, dpi=160, metadata=undated)
     with output.whole_file(path) as temporary:
         temporary.write_bytes(picture)
 
 
-def file_content(figure: Figure, settings: Any, **form: Any) -> bytes:
-    """Draw a figure as the content of a file, without hidden characters in its texts."""
-    with without_glyph_warnings():
-        figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # names stand beside what they name, and the file shows all of them
+def file_content(figure: Figure, settings: Any, margin: float, **form: Any) -> bytes:
+    """Draw a figure as the content of a file, with a margin in inches, without hidden characters in its texts."""
+    layout = figure.get_layout_engine()
+    if layout is not None and not (isinstance(layout, PageLayout) and layout.settled):
+        with without_glyph_warnings():
+            layout.execute(figure)
     for text in figure.findobj(Text):
         text.set_text(escaped_lines(text.get_text()))
         text.set_in_layout(True)
     stream = BytesIO()
-    with rc_context({"svg.hashsalt": "bemcontact"}), rc_context(settings), without_glyph_warnings():
-        figure.savefig(stream, bbox_inches="tight", **form)
+    with rc_context({**NO_LAYOUT, "svg.hashsalt": "bemcontact", **settings}), without_glyph_warnings():
+        figure.set_layout_engine(None)  # names stand beside what they name, and the file shows all of them
+        figure.savefig(stream, bbox_inches=figure.get_tightbbox().padded(margin), **form)
     return stream.getvalue()
+
+
+def settle(axes: Axes) -> None:
+    """Lay out the page, so that positions on it are known; names that are placed on it do not change them."""
+    page = axes.get_figure(root=True)
+    if page is None:
+        return
+    with without_glyph_warnings():
+        page.draw_without_rendering()
+    layout = page.get_layout_engine()
+    if isinstance(layout, PageLayout):
+        layout.settled = True
 
 
 @contextmanager
@@ -92,9 +110,15 @@ def without_glyph_warnings() -> Iterator[None]:
 
 def new_page(width: float, height: float) -> Figure:
     """Make an empty figure of this size in inches."""
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = Figure(figsize=(width, height), layout=PageLayout())
     FigureCanvasAgg(figure)
     return figure
+
+
+class PageLayout(ConstrainedLayoutEngine):
+    """Layout of a page of this program. One that is settled is not laid out again for its file."""
+
+    settled = False
 
 
 def plain(text: str) -> str:

@@ -42,6 +42,7 @@ from bemcontact.report.figures.page import (
     add_path,
     frame_plan,
     new_page,
+    settle,
     short_label,
     without_glyph_warnings,
     wrapped,
@@ -57,7 +58,6 @@ from bemcontact.report.figures.symbols import (
     joined,
     place_arrow,
     place_names,
-    settle,
 )
 from bemcontact.report.formatting import (
     NEGLIGIBLE,

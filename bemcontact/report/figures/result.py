@@ -32,10 +32,10 @@ from bemcontact.report.figures.page import (
     only_around,
     pieces_of,
     plain,
+    settle,
     short_label,
     wrapped,
 )
-from bemcontact.report.figures.symbols import settle
 from bemcontact.report.figures.zone_bars import closed_zones, draw_zone_bars
 from bemcontact.report.formatting import with_unit
 from bemcontact.report.verdicts import Verdict, in_short, overall, result_verdicts

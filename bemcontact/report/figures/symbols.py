@@ -12,7 +12,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Bbox
 
 from bemcontact.arrays import Array, BoolArray, IntArray
-from bemcontact.report.figures.page import add_path, without_glyph_warnings
+from bemcontact.report.figures.page import add_path
 
 SYMBOL_REACH = 18.0
 """Half the length of a symbolic arrow, in pixels of the page."""
@@ -176,14 +176,6 @@ def draw_arrows(axes: Axes, tails: Array, vectors: Array, color: str) -> Array:
     return np.concatenate([tails + share * vectors for share in np.linspace(0, 1, 31)])
 
 
-def settle(axes: Axes) -> None:
-    """Lay out the page, so that positions on it are known; names that are placed on it do not change them."""
-    page = axes.get_figure(root=True)
-    if page is not None:
-        with without_glyph_warnings():
-            page.draw_without_rendering()
-
-
 def place_names(
     axes: Axes,
     names: Sequence[Name],
@@ -255,7 +247,8 @@ def _place(
         return centers[least_crowded(centers, size, taken, ink)]
 
     def free(centers: Array) -> BoolArray:
-        return np.array([not any(overlap(centered(center, size), box) for box in taken) for center in centers], bool)
+        low, high, boxes = *_corners(centers, size), np.reshape(taken, (-1, 4))
+        return ((low[:, None] >= boxes[:, 2:]) | (high[:, None] <= boxes[:, :2])).any(axis=2).all(axis=1)
 
     def lost(anchors: Array, centers: Array) -> BoolArray:
         ends = _line_ends(anchors, centers, size)
@@ -361,10 +354,16 @@ def _places(anchors: Array, directions: Array, size: tuple[float, float]) -> tup
     return np.tile(anchors, (len(centers), 1)), np.concatenate(centers)
 
 
+def _corners(centers: Array, size: tuple[float, float]) -> tuple[Array, Array]:
+    """Lower left and upper right corners (c, 2) of a text of this size at each center (c, 2)."""
+    half = np.array(size) / 2
+    return centers - half, centers + half
+
+
 def _holds(frame: Bbox, centers: Array, size: tuple[float, float]) -> BoolArray:
     """Whether each text lies inside a frame."""
-    half = np.array(size) / 2
-    return np.all((centers - half > frame.min) & (centers + half < frame.max), axis=1)
+    low, high = _corners(centers, size)
+    return np.all((low > frame.min) & (high < frame.max), axis=1)
 
 
 def _within(area: Array, size: tuple[float, float]) -> Array:
@@ -378,8 +377,12 @@ def _within(area: Array, size: tuple[float, float]) -> Array:
 
 def _crossed(walls: Sequence[Path], centers: Array, size: tuple[float, float]) -> BoolArray:
     """Whether a wall goes through a text of this size at each center (c, 2)."""
-    boxes = [Bbox(np.reshape(centered(center, size), (2, 2))) for center in centers]
-    return np.array([any(wall.intersects_bbox(box, filled=False) for wall in walls) for box in boxes], bool)
+    crossed, (low, high) = np.zeros(len(centers), bool), _corners(centers, size)
+    for wall in walls:
+        near = ~crossed & ((low <= wall.vertices.max(axis=0)) & (high >= wall.vertices.min(axis=0))).all(axis=1)
+        boxes = map(Bbox, np.stack([low[near], high[near]], axis=1))
+        crossed[near] = [wall.intersects_bbox(box, filled=False) for box in boxes]
+    return crossed
 
 
 def _line_ends(anchors: Array, centers: Array, size: tuple[float, float]) -> Array:

@@ -47,9 +47,7 @@ def vector_graphic(figure: Figure) -> bytes:
     on dark pages.
     """
     metadata = {DATES["svg"]: None, "Creator": None, "Format": None, "Type": None}
-    picture = file_content(
-        figure, {"svg.fonttype": "path"}, format="svg", transparent=True, pad_inches=0.08, metadata=metadata
-    )
+    picture = file_content(figure, {"svg.fonttype": "path"}, 0.08, format="svg", transparent=True, metadata=metadata)
     written = re.sub(r'(?<= d=")[^"]*', _shortened, picture.decode())
     written = re.sub(r'(?<= [xy]=")-?[\d.]+', lambda place: _decimal(round(100 * float(place[0]))), written)
     return written.replace("</style>", f"{_style_sheet()}</style>", 1).encode()

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bemcontact.report.figures.page import new_page
+from bemcontact.report.figures.page import new_page, settle
 from bemcontact.report.figures.symbols import (
     COVERED,
     Box,
@@ -19,7 +19,6 @@ from bemcontact.report.figures.symbols import (
     least_crowded,
     overlap,
     place_names,
-    settle,
 )
 
 NOTHING = np.zeros((0, 2))
