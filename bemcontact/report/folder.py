@@ -18,22 +18,8 @@ from bemcontact.modelling.gap_design.relief import Relief
 from bemcontact.options import StressMeasure
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.problems import Problem
-from bemcontact.report import design_page, page, path_page, result_page, study_page
+from bemcontact.report import design_page, figures, page, path_page, result_page, study_page
 from bemcontact.report import reproduction as paper_page
-from bemcontact.report.figures import (
-    animated_graphic,
-    can_be_animated,
-    draw_animation,
-    figure_of_states,
-    figures_of,
-    figures_of_design,
-    figures_of_path,
-    figures_of_reproduction,
-    figures_of_study,
-    pictures_of,
-    states_on,
-    vector_graphic,
-)
 from bemcontact.report.folder_kinds import (
     DESIGN,
     PATH,
@@ -53,7 +39,7 @@ from bemcontact.studies.table import StudyTable
 def save(study: MeshStudy, folder: Path, spec: str | None = None) -> None:
     """Write a mesh study as a folder: page, numbers, pictures, condensed problem of the finest mesh, spec if given."""
     ensure_folder_writable(folder)
-    pictures = {name: vector_graphic(figure) for name, figure in figures_of(study).items()}
+    pictures = figures.vector_graphics(figures.figures_of(study))
     text = page.render(study.to_dict(), pictures, spec)
     with _written(folder, REPORT, text, study.to_json(), pictures) as temporary:
         study.finest.comparison.contact.save(temporary / "contact.npz")
@@ -69,7 +55,7 @@ def save_result(
 ) -> None:
     """Write a result, or those of all load cases, as a folder: page, numbers, tables, pictures, spec if given."""
     ensure_folder_writable(folder, RESULT)
-    pictures = {name: vector_graphic(figure) for name, figure in pictures_of(results, stress).items()}
+    pictures = figures.vector_graphics(figures.pictures_of(results, stress))
     text = result_page.render(results, pictures, spec, stress=stress)
     with _written(folder, RESULT, text, results.to_json(), pictures) as temporary:
         _write_tables(results, temporary, spec)
@@ -79,7 +65,7 @@ def save_cases(comparisons: CaseComparisons, folder: Path, spec: str | None = No
     """Write comparisons under all load cases as a folder: page, numbers, tables, pictures, spec if given."""
     ensure_folder_writable(folder)
     answers = comparisons.answers
-    pictures = {name: vector_graphic(figure) for name, figure in pictures_of(answers).items()}
+    pictures = figures.vector_graphics(figures.pictures_of(answers))
     text = result_page.render(answers, pictures, spec, comparisons)
     with _written(folder, REPORT, text, comparisons.to_json(), pictures) as temporary:
         _write_tables(answers, temporary, spec)
@@ -95,7 +81,7 @@ def _write_tables(results: Result | CaseResults, folder: Path, spec: str | None)
 def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
     """Write the problems of the paper as a folder: page, numbers, pictures."""
     ensure_folder_writable(folder, REPRODUCTION)
-    pictures = {name: vector_graphic(figure) for name, figure in figures_of_reproduction(reproduction).items()}
+    pictures = figures.vector_graphics(figures.figures_of_reproduction(reproduction))
     text = paper_page.render(reproduction.to_dict(), pictures)
     with _written(folder, REPRODUCTION, text, reproduction.to_json(), pictures):
         pass
@@ -115,10 +101,10 @@ def save_path(
     """
     ensure_folder_writable(folder, PATH)
     drawn = None if problem is None else Variation(_on_some_mesh(problem), path.key).at(path.end)
-    pictures = {name: vector_graphic(figure) for name, figure in figures_of_path(path, drawn).items()}
-    if can_be_animated(path):
-        pictures["animation"] = animated_graphic(draw_animation(path, progress))
-        pictures["states"] = vector_graphic(figure_of_states(states_on(path)))
+    pictures = figures.vector_graphics(figures.figures_of_path(path, drawn))
+    if figures.can_be_animated(path):
+        pictures["animation"] = figures.animated_graphic(figures.draw_animation(path, progress))
+        pictures["states"] = figures.vector_graphic(figures.figure_of_states(figures.states_on(path)))
     text = path_page.render(path, pictures, problem, spec)
     with _written(folder, PATH, text, path.to_json(), pictures) as temporary:
         (temporary / "path.csv").write_text(path.to_csv(), encoding="utf-8", newline="\n")
@@ -134,7 +120,7 @@ def _on_some_mesh(problem: Problem) -> Problem:
 def save_design(design: GapDesign, folder: Path, relief: Relief | None = None) -> None:
     """Write a designed gap as a folder: page, table, numbers, pictures; the page has the bounds if they are given."""
     ensure_folder_writable(folder, DESIGN)
-    pictures = {name: vector_graphic(figure) for name, figure in figures_of_design(design).items()}
+    pictures = figures.vector_graphics(figures.figures_of_design(design))
     text = design_page.render(design, pictures, relief)
     with _written(folder, DESIGN, text, design.to_json(), pictures) as temporary:
         (temporary / "design.csv").write_text(design_page.design_csv(design), encoding="utf-8", newline="\n")
@@ -143,7 +129,7 @@ def save_design(design: GapDesign, folder: Path, relief: Relief | None = None) -
 def save_study(study: StudyTable, folder: Path, spec: str | None = None) -> None:
     """Write a study of parameters as a folder: page, tables, pictures, the journal that is there, and spec if given."""
     ensure_folder_writable(folder, STUDY)
-    pictures = {caption: vector_graphic(figure) for caption, figure in figures_of_study(study).items()}
+    pictures = figures.vector_graphics(figures.figures_of_study(study))
     text = study_page.render(study, pictures, spec)
     numbered = {f"{number:02d}": picture for number, picture in enumerate(pictures.values(), 1)}
     with _written(folder, STUDY, text, study.to_json(), numbered) as temporary:

@@ -125,8 +125,8 @@ from bemcontact.report import folder
 
 place, chance, seen = Path(sys.argv[1]), random.Random(0), set()
 study = without_a_body()
-folder.figures_of = lambda study: dict.fromkeys(("pressure", "gap"))
-folder.vector_graphic = lambda figure: b"<svg/>"
+folder.figures.figures_of = lambda study: dict.fromkeys(("pressure", "gap"))
+folder.figures.vector_graphics = lambda pictures: dict.fromkeys(pictures, b"<svg/>")
 folder.save(study, place, "warm")
 begin = time.monotonic()
 folder.save(study, place, "first")

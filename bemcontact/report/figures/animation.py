@@ -30,7 +30,7 @@ from bemcontact.report.figures.page import (
 )
 from bemcontact.report.figures.path import draw_peaks, draw_resultants
 from bemcontact.report.figures.problem import largest_traction
-from bemcontact.report.figures.vector_graphic import vector_graphic
+from bemcontact.report.figures.svg import vector_graphic
 from bemcontact.report.formatting import number
 
 ANIMATIONS = (".gif", ".svg")

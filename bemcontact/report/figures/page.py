@@ -36,8 +36,8 @@ FORMATS = (".png", ".svg", ".pdf")
 DATES = {"svg": "Date", "pdf": "CreationDate"}
 """Format -> the key of its metadata that would make each file another."""
 
-NO_LAYOUT = {"figure.autolayout": False, "figure.constrained_layout.use": False}
-"""Settings with which matplotlib leaves axes where they are."""
+OF_FILES: Any = {"svg.hashsalt": "bemcontact", "figure.autolayout": False, "figure.constrained_layout.use": False}
+"""Settings for files: names in them are the same each time, and axes stay where they are."""
 
 # The palette of Okabe and Ito, which color-blind people can tell apart.
 BLACK, BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = (
@@ -82,7 +82,7 @@ def file_content(figure: Figure, settings: Any, margin: float, **form: Any) -> b
         text.set_text(escaped_lines(text.get_text()))
         text.set_in_layout(True)
     stream = BytesIO()
-    with rc_context({**NO_LAYOUT, "svg.hashsalt": "bemcontact", **settings}), without_glyph_warnings():
+    with rc_context(OF_FILES), rc_context(settings), without_glyph_warnings():
         figure.set_layout_engine(None)  # names stand beside what they name, and the file shows all of them
         figure.savefig(stream, bbox_inches=figure.get_tightbbox().padded(margin), **form)
     return stream.getvalue()

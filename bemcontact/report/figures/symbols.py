@@ -248,7 +248,8 @@ def _place(
 
     def free(centers: Array) -> BoolArray:
         low, high, boxes = *_corners(centers, size), np.reshape(taken, (-1, 4))
-        return ((low[:, None] >= boxes[:, 2:]) | (high[:, None] <= boxes[:, :2])).any(axis=2).all(axis=1)
+        apart = np.any((low[:, None] >= boxes[:, 2:]) | (high[:, None] <= boxes[:, :2]), axis=2)
+        return np.all(apart, axis=1)
 
     def lost(anchors: Array, centers: Array) -> BoolArray:
         ends = _line_ends(anchors, centers, size)
@@ -379,7 +380,8 @@ def _crossed(walls: Sequence[Path], centers: Array, size: tuple[float, float]) -
     """Whether a wall goes through a text of this size at each center (c, 2)."""
     crossed, (low, high) = np.zeros(len(centers), bool), _corners(centers, size)
     for wall in walls:
-        near = ~crossed & ((low <= wall.vertices.max(axis=0)) & (high >= wall.vertices.min(axis=0))).all(axis=1)
+        points = np.asarray(wall.vertices)
+        near = ~crossed & ((low <= points.max(axis=0)) & (high >= points.min(axis=0))).all(axis=1)
         boxes = map(Bbox, np.stack([low[near], high[near]], axis=1))
         crossed[near] = [wall.intersects_bbox(box, filled=False) for box in boxes]
     return crossed

@@ -14,6 +14,7 @@ from drawings import beam_over_a_circle, block_in_a_corner, seal_in_a_groove
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import ScalarFormatter
 
 import bemcontact
@@ -100,6 +101,25 @@ def test_saved_in_the_format_of_the_ending(problem: Problem, tmp_path: Path, end
     figures.save(figures.figure_of_problem(problem, mesh.build(problem)), path)
     assert path.read_bytes().startswith(magic)
     assert [*tmp_path.iterdir()] == [path]
+
+
+def test_a_page_is_laid_out_once_and_names_stay_beside_what_they_name(problem: Problem, tmp_path: Path, monkeypatch):
+    """Settled for its names, its file has the same axes: one layout, and one drawing that is not thrown away."""
+    calls = list[str]()
+    for owner, name in ((ConstrainedLayoutEngine, "execute"), (Figure, "draw")):
+        whole = getattr(owner, name)
+
+        def counted(self, *arguments, name=name, whole=whole):
+            calls.append(name)
+            return whole(self, *arguments)
+
+        monkeypatch.setattr(owner, name, counted)
+    figure = figures.figure_of_problem(problem, mesh.build(problem))
+    assert calls == ["draw", "execute"]
+    settled = [axes.get_position().bounds for axes in figure.axes]
+    figures.save(figure, tmp_path / "problem.png")
+    assert calls == ["draw", "execute", "draw"]
+    assert [axes.get_position().bounds for axes in figure.axes] == settled
 
 
 def test_unknown_format_is_refused(tmp_path: Path):

@@ -1,7 +1,7 @@
 """Pictures as SVG for light and dark pages, with no more points than can be seen."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -51,6 +51,11 @@ def vector_graphic(figure: Figure) -> bytes:
     written = re.sub(r'(?<= d=")[^"]*', _shortened, picture.decode())
     written = re.sub(r'(?<= [xy]=")-?[\d.]+', lambda place: _decimal(round(100 * float(place[0]))), written)
     return written.replace("</style>", f"{_style_sheet()}</style>", 1).encode()
+
+
+def vector_graphics(figures: Mapping[str, Figure]) -> dict[str, bytes]:
+    """Write figures by name, as `vector_graphic` does."""
+    return {name: vector_graphic(figure) for name, figure in figures.items()}
 
 
 def _style_sheet() -> str:

@@ -13,7 +13,7 @@ from mesh_studies import on_one_mesh
 
 from bemcontact.report import figures
 from bemcontact.report.figures.page import BODIES
-from bemcontact.report.figures.vector_graphic import UNSEEN, needed
+from bemcontact.report.figures.svg import UNSEEN, needed
 
 
 def test_every_color_has_contrast_on_paper_and_in_the_dark():
