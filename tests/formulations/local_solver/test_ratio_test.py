@@ -67,7 +67,7 @@ def test_phase_one_steps_to_the_least_sum_of_violations(seed):
     def total(step):
         return float(statement.violation(values + step * along)[violated].sum())
 
-    inner = _breakpoint(progress, signs, along, length, np.inf)
+    inner = _breakpoint(progress, signs, along, length)
     if signs @ along >= 0.0:  # the sum does not fall
         return
     with np.errstate(divide="ignore", invalid="ignore"):
