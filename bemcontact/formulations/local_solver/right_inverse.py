@@ -150,6 +150,7 @@ class RightInverse:
     def append(self, column: Array) -> None:
         """Append a column (n,)."""
         self._settle()
+        self._bound = max(self._bound, sqrt(dot(column, column)))
         self._stored[:, self.size] = self._pack(column)
         self._resize(self.size + 1)
 

@@ -302,3 +302,14 @@ def test_the_bound_of_the_right_inverse_is_above_its_entries():
         largest = np.abs(working.N).max(initial=0.0)
         assert not working.inverse.is_below(largest)
         assert working.inverse.is_below(1.001 * largest + 1e-300)
+
+
+def test_a_short_row_raises_the_bound_of_the_right_inverse():
+    """A row of length 1/1000 has a column of length 1000, also if it is orthogonal to the other rows."""
+    A = np.array([[1.0, 0.0, 0.0], [0.0, 1e-3, 0.0]])
+    data = Statement(H=np.eye(3), c=np.zeros(3), A=A, lower=-np.ones(5), upper=np.ones(5))
+    working = WorkingSet(data, np.array([0, 0, 0, 1, 0], dtype=np.int8))
+    assert working.inverse.is_below(2.0)
+    working.add(4, 1)
+    assert not working.inverse.is_below(999.0)
+    assert working.inverse.is_below(1001.0)
