@@ -54,9 +54,8 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
         factors = _balanced(A, factors)
     D, E = _power_of_two(factors[:n]), factors[n:]
     if E.size:
-        A = A * D
-        E = _power_of_two(E / row_lengths(E[:, None] * A))
-        A *= E[:, None]
+        E = _power_of_two(E / row_lengths(E[:, None] * A * D))
+        A = E[:, None] * A * D
     of_bounds = np.concatenate([1.0 / D, E])
     bounds *= of_bounds
     greatest, least = of_bounds.item(of_bounds.argmax()), of_bounds.item(of_bounds.argmin())

@@ -288,7 +288,7 @@ def first_order(
     wrong = np.where(held, sides * multipliers, size)
     wrong[statement.equality] = 0.0
     if statement.A.size:
-        held[n:] &= statement.absolute[2].dot(np.ones(n)) > 0.0  # a row of zeros holds nothing
+        held[n:] &= np.logical_or.reduce(statement.A, axis=1)  # a row of zeros holds nothing
     strong = held & (statement.equality | (size > WEAK * zeros))
     active = working | (np.minimum(below, above) <= sharp)
     right, doubtful = True, False

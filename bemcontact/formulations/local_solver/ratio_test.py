@@ -34,7 +34,7 @@ def nearest(
     The first pass finds the longest step at which nothing is violated beyond its tolerance; the second takes, among the
     constraints met until then, the one that is met most steeply (Harris, Math. Programming 5 (1973) 1-28). A run that
     has stalled takes the lowest number among the ties. A constraint in the span of a working set is not met within it.
-    The step may end before, at `end`.
+    A step that ends at `end` in any case is no longer than that.
     """
     statement, values = progress.statement, progress.values
     # the bound ahead has the quotient that is not negative

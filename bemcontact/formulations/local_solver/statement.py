@@ -26,9 +26,8 @@ EPS = float(np.finfo(float).eps)
 
 def largest(numbers: Array) -> float:
     """The largest absolute value, 0 if there is none."""
-    if numbers.size == 0:
-        return 0.0
-    return max(numbers.item(numbers.argmax()), -numbers.item(numbers.argmin()))
+    sizes = np.abs(numbers)
+    return sizes.item(sizes.argmax()) if sizes.size else 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
