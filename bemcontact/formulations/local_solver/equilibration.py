@@ -5,7 +5,7 @@ from math import frexp, isfinite, ldexp, sqrt
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.factorizations import posv, row_lengths
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
@@ -49,17 +49,17 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     """
     n, bounds = statement.c.size, np.array([statement.lower, statement.upper])
     present = np.count_nonzero(np.isfinite(bounds))
-    natural = natural_factors(statement, bounds)
-    D, E, A = natural[:n], natural[n:], statement.A
+    factors, A = natural_factors(statement, bounds), statement.A
+    if A.size:
+        factors = _balanced(A, factors)
+    D, E = _power_of_two(factors[:n]), factors[n:]
     if E.size:
-        D, E = _balanced(A, D, E)
-        D = _power_of_two(D)
         E = _power_of_two(E / row_lengths(E[:, None] * A * D))
         A = E[:, None] * A * D
-    else:
-        D = _power_of_two(D)
-    bounds *= np.concatenate([1.0 / D, E])
-    smaller = _smaller_unit(bounds, max(largest(E), largest(1.0 / D)))
+    of_bounds = np.concatenate([1.0 / D, E])
+    bounds *= of_bounds
+    greatest, least = of_bounds.item(of_bounds.argmax()), of_bounds.item(of_bounds.argmin())
+    smaller = _smaller_unit(bounds, greatest)
     if smaller < 1.0:
         D, E, bounds = smaller * D, E / smaller, bounds / smaller
     H, c = D[:, None] * statement.H * D, D * statement.c
@@ -67,8 +67,7 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     unit = _near_power(1.0 / (max(sizes[:2]) or 1.0))
     H *= unit
     c *= unit
-    finite = isfinite(sum(sizes) + D.dot(1.0 / D) + E.dot(1.0 / E))  # zero times infinity is no number
-    if not finite or np.count_nonzero(np.isfinite(bounds)) < present:
+    if not isfinite(sum(sizes) + greatest) or least == 0.0 or np.count_nonzero(np.isfinite(bounds)) < present:
         raise ProblemError(
             "the sizes of entries and bounds are too far apart for double precision; choose other units, or write 0 "
             "for what is round-off"
@@ -76,20 +75,19 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
     return Statement(H=H, c=c, A=A, lower=bounds[0], upper=bounds[1]), Scales(variables=D, rows=E, objective=unit)
 
 
-def _balanced(A: Array, D: Array, E: Array) -> tuple[Array, Array]:
-    """The factors of columns and rows by which the largest entry of each column and row of A is about one."""
-    sizes = np.abs(A)
-    sizes *= E[:, None]
-    sizes *= D
+def _balanced(A: Array, factors: Array) -> Array:
+    """The factors of columns and rows (n + m,) by which the largest entry of each column and row of A is about one."""
+    sizes, n = np.abs(A), A.shape[1]
+    sizes *= factors[n:, None]
+    sizes *= factors[:n]
     for _ in range(SWEEPS):
-        columns = np.sqrt(np.maximum.reduce(sizes, axis=0))
-        rows = np.sqrt(np.maximum.reduce(sizes, axis=1))
-        columns[columns == 0.0] = 1.0
-        rows[rows == 0.0] = 1.0
-        sizes /= rows[:, None]
-        sizes /= columns
-        D, E = D / columns, E / rows
-    return D, E
+        roots = np.sqrt(np.concatenate([np.maximum.reduce(sizes, 0), np.maximum.reduce(sizes, 1)]))
+        if np.count_nonzero(roots) < roots.size:
+            roots[roots == 0.0] = 1.0
+        sizes /= roots[n:, None]
+        sizes /= roots[:n]
+        factors = factors / roots
+    return factors
 
 
 def natural_factors(statement: Statement, bounds: Array) -> Array:
@@ -105,9 +103,11 @@ def natural_factors(statement: Statement, bounds: Array) -> Array:
     """
     n = statement.c.size
     present, logarithms = _entries(statement)
-    bounds_present, of_bounds = _logarithms(_smaller_bounds(bounds))
+    smaller = _smaller_bounds(bounds)
+    bounds_present, of_bounds = _logarithms(smaller, smaller < np.inf)
     objective, rows, of_rows = present[: n + 1], present[n + 1 :], logarithms[n + 1 :]
-    weights, ones = np.full(n + 1, OF_OBJECTIVE), np.ones(n)
+    units = np.ones(present.shape[0])
+    weights, ones = OF_OBJECTIVE * units[: n + 1], units[:n]
     column, of_column = weights.dot(objective), weights.dot(logarithms[: n + 1])
     whole = 0.5 * float(column.dot(ones) + OF_OBJECTIVE * objective[n].dot(ones)) + UNDECIDED
     of_whole = 0.5 * float(of_column.dot(ones) + OF_OBJECTIVE * logarithms[n].dot(ones))
@@ -118,7 +118,7 @@ def natural_factors(statement: Statement, bounds: Array) -> Array:
     e_diagonal = rows.dot(ones) + (OF_BOUNDS * bounds_present[n:] + UNDECIDED)
     e_right = of_rows.dot(ones) + OF_BOUNDS * of_bounds[n:]
     if rows.size:
-        units = np.ones(e_right.size)
+        units = units[n + 1 :]
         diagonal += units.dot(rows)
         shares = rows / e_diagonal[:, None]
         reduced -= rows.T.dot(shares)
@@ -134,7 +134,7 @@ def _entries(statement: Statement) -> tuple[Array, Array]:
     # an entry of H or A counts as rounding if it is small beside the largest entries of its row and of its column
     n = statement.c.size
     sizes = np.abs(np.concatenate([statement.H, statement.c[None], statement.A]))
-    present, logarithms = _logarithms(sizes)
+    present, logarithms = _logarithms(sizes, sizes > 0.0)
     if logarithms.item(logarithms.argmax()) - logarithms.item(logarithms.argmin()) > WIDE:
         for matrix in (slice(n), slice(n + 1, None)):  # H by itself: its units are not those of A, and it is symmetric
             columns = np.maximum.reduce(sizes[matrix], axis=0, initial=0.0)
@@ -145,19 +145,16 @@ def _entries(statement: Statement) -> tuple[Array, Array]:
     return present, logarithms
 
 
-def _logarithms(sizes: Array) -> tuple[Array, Array]:
+def _logarithms(sizes: Array, present: BoolArray) -> tuple[Array, Array]:
     """One where there is a number, zero where there is none; and binary logarithms of the numbers."""
-    present = sizes > 0.0
     return present.astype(float), np.log2(sizes, out=np.zeros(sizes.shape), where=present)
 
 
 def _smaller_bounds(bounds: Array) -> Array:
-    """Size of the smaller nonzero bound of each constraint; 0 where there is none (n + m,)."""
+    """Size of the smaller nonzero bound of each constraint; infinite where there is none (n + m,)."""
     sizes = np.abs(bounds)
     sizes[sizes == 0.0] = np.inf
-    smaller = np.minimum(*sizes)
-    smaller[smaller == np.inf] = 0.0
-    return smaller
+    return np.minimum(*sizes)
 
 
 def _smaller_unit(bounds: Array, factor: float) -> float:

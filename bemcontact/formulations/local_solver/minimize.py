@@ -13,7 +13,7 @@ from bemcontact.formulations.local_solver.equilibration import Scales, equilibra
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 from bemcontact.formulations.local_solver.infeasibility import proof_of_infeasibility
 from bemcontact.formulations.local_solver.optimality import FirstOrder, cleaned_ray, examine, first_order
-from bemcontact.formulations.local_solver.phase_one import reach_feasibility, violated_signs
+from bemcontact.formulations.local_solver.phase_one import is_violated, reach_feasibility
 from bemcontact.formulations.local_solver.phase_two import Descent, Ending
 from bemcontact.formulations.local_solver.progress import FINER, PARALLEL, SearchState
 from bemcontact.formulations.local_solver.ratio_test import nearest
@@ -85,7 +85,7 @@ def run_phases(progress: SearchState, sides: Sides) -> tuple[Finding, Inertia]:
                 return _finding(progress, QPStatus.INFEASIBLE, sides, certificate=certificate), start or (0, 0, 0)
             failures += 1
             continue
-        if progress.exhausted and violated_signs(progress).any():
+        if progress.exhausted and is_violated(progress):
             break
         descent = Descent(progress, working)
         start = start or reduced_inertia(descent)

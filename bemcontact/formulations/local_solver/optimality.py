@@ -271,13 +271,13 @@ def first_order(
     values = progress.exact_values
     slack, sharp, size = 2.0 * progress.slack, progress.sharp, np.abs(multipliers)
     violation, rest = statement.violation(values), np.abs(progress.gradient - statement.transposed(multipliers))
-    feasible = not np.count_nonzero(violation) or bool(np.all(violation <= progress.allowed(sharp)))
+    feasible = not np.count_nonzero(violation) or _all(violation <= progress.allowed(sharp))
     stationary = largest(rest) <= 2.0 * progress.zero
     if not stationary:
         rounding = 4.0 * EPS * (size[:n] + size[n:].dot(statement.absolute[2]))
         own = progress.terms(size[:0], statement.A[:0])  # multipliers of which more is rounding say nothing
         rounding = np.minimum(rounding, np.maximum(MOST_ROUNDING * own, progress.zero))
-        stationary = bool(np.all(rest <= 2.0 * progress.zero + rounding))
+        stationary = _all(rest <= 2.0 * progress.zero + rounding)
     below, above = statement.distances(values)
     sides = statement.sides_within(below, above, slack)
     held = sides != 0
@@ -288,14 +288,14 @@ def first_order(
     wrong = np.where(held, sides * multipliers, size)
     wrong[statement.equality] = 0.0
     if statement.A.size:
-        held[n:] &= statement.absolute[2].dot(np.ones(n)) > 0.0  # a row of zeros holds nothing
+        held[n:] &= np.logical_or.reduce(statement.A, axis=1)  # a row of zeros holds nothing
     strong = held & (statement.equality | (size > WEAK * zeros))
     active = working | (np.minimum(below, above) <= sharp)
     right, doubtful = True, False
     if np.count_nonzero(wrong > 0.0):
         tolerated = 2.0 * zeros
         tolerated[n:] = np.maximum(tolerated[n:], 2.0 * progress.zero)
-        right = bool(np.all(wrong <= tolerated))
+        right = _all(wrong <= tolerated)
         likely = np.where(zeros > progress.zero, DOUBT_OF_ROUGH, DOUBT)
         doubtful = bool(np.count_nonzero(wrong > np.fmin(likely * zeros, SEEN * terms())))
     return FirstOrder(
@@ -306,6 +306,11 @@ def first_order(
         size=size,
         doubtful=doubtful,
     )
+
+
+def _all(hold: BoolArray) -> bool:
+    """Whether all conditions hold."""
+    return np.count_nonzero(hold) == hold.size
 
 
 def cleaned_ray(progress: SearchState, ray: Array) -> Array | None:

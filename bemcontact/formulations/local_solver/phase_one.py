@@ -24,7 +24,7 @@ def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> t
     Farkas multipliers (n + m,) in scaled units where the sum cannot be reduced; they are to be verified.
     """
     statement, n = progress.statement, progress.x.size
-    if not np.count_nonzero(violated_signs(progress)):
+    if not is_violated(progress):
         return WorkingSet(statement, _and_equalities(statement, sides), sides != 0), None
     working = WorkingSet(statement, _and_equalities(statement, sides), complete=False)
     near = working.onto(progress.x)
@@ -67,6 +67,12 @@ def _and_equalities(statement: Statement, sides: Sides) -> Sides:
     return sides
 
 
+def is_violated(progress: SearchState) -> bool:
+    """Whether the point violates a constraint by more than its tolerance."""
+    values = progress.values
+    return bool(np.count_nonzero(values > progress.highest) or np.count_nonzero(values < progress.lowest))
+
+
 def violated_signs(progress: SearchState) -> Array:
     """Sign of the violation of each constraint: +1 above its bounds, -1 below them, 0 if feasible (n + m,)."""
     values = progress.values
@@ -93,9 +99,11 @@ def _step(progress: SearchState, working: WorkingSet, signs: Array, direction: A
     """Move along the direction to the constraint that ends the step, and hold it; False if there is none."""
     length = sqrt(dot(direction, direction))
     along = working.values(direction)
-    wall = nearest(progress, along, length, working.held | signs.astype(bool), working)
-    inner = _breakpoint(progress, signs, along, length, INFINITY if wall is None else wall.step)
-    block = inner or wall
+    block = _breakpoint(progress, signs, along, length)
+    end = INFINITY if block is None else block.step
+    wall = nearest(progress, along, length, working.held | signs.astype(bool), working, end)
+    if wall is not None and wall.step < end:
+        block = wall
     if block is None:
         return False
     progress.move(along, block.step, length)
@@ -105,15 +113,13 @@ def _step(progress: SearchState, working: WorkingSet, signs: Array, direction: A
     return True
 
 
-def _breakpoint(
-    progress: SearchState, signs: Array, along: Array, length: float, furthest: float
-) -> BlockingConstraint | None:
-    """The violated constraint at which the sum of infeasibilities stops falling, within a furthest step."""
+def _breakpoint(progress: SearchState, signs: Array, along: Array, length: float) -> BlockingConstraint | None:
+    """The violated constraint at which the sum of infeasibilities stops falling."""
     statement, rising = progress.statement, signs * along
     towards = (rising < -1e-10 * length).nonzero()[0]
     near, speeds = progress.violation[towards], -rising[towards]
     entering = (near / speeds).tolist()
-    if not entering or min(entering) > furthest:
+    if not entering:
         return None
     width = statement.upper[towards] - statement.lower[towards]
     steps, falls = entering + ((near + width) / speeds).tolist(), speeds.tolist()
@@ -123,7 +129,7 @@ def _breakpoint(
         if fall <= 0.0:
             break
     step = steps[at]
-    if fall > 0.0 or step > furthest or step == INFINITY:
+    if fall > 0.0 or step == INFINITY:
         return None
     constraint = towards.item(at % len(falls))
     if statement.equality.item(constraint):

@@ -438,14 +438,13 @@ class Descent:
         # way to the point too. A change of the rows moves the point by N and by a Newton step. Terms and rows change
         # with irregular phases, since with signs the movements by several rows of whole numbers can cancel.
         working, hessian, size = self.working, self.hessian, self.progress.traveled
-        if not working.size and not hessian.size:
-            return np.zeros(size.size)
-        Z = hessian.Z
-        moved = Z.dot(Z.T.dot(terms[:, None] * _phases(size.size)))
+        Z, moved = hessian.Z, np.zeros((size.size, 2))
         if working.size:
-            by_rows = working.N.dot(np.abs(working.W).dot(size)[:, None] * _phases(working.size))
-            by_rows -= Z.dot(Z.T.dot(self.progress.statement.bent(by_rows)))
-            moved = np.hypot(moved, by_rows)
+            moved = working.N.dot(np.abs(working.W).dot(size)[:, None] * _phases(working.size))
+            if hessian.size:
+                moved -= Z.dot(Z.T.dot(self.progress.statement.bent(moved)))
+        if hessian.size:
+            moved = np.hypot(moved, Z.dot(Z.T.dot(terms[:, None] * _phases(size.size))))
         return np.hypot(moved[:, 0], moved[:, 1])
 
     def _advance(

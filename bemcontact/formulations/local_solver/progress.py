@@ -96,7 +96,8 @@ class SearchState:
 
     def _take_in(self) -> None:
         """Update `traveled` with the stored points."""
-        self._traveled = np.maximum.reduce(np.abs([self._traveled, *self._passed]))
+        passed = np.abs(np.array(self._passed))
+        self._traveled = np.maximum(self._traveled, np.maximum.reduce(passed))
         self._passed.clear()
 
     def forget(self) -> None:
@@ -214,10 +215,11 @@ class SearchState:
         """Move to a point, and compute values, slacks and gradient there."""
         self.x, self.values, self._steps = x, self.statement.values(x), False
         size = np.abs(x)
-        self.far = max(self.far, sqrt(dot(size, size)))
+        self._traveled = np.maximum(self.traveled, size)
+        self.far = max(self.far, sqrt(dot(x, x)))
         self._placed = self.statement.terms(size)
         self._allow()
-        self.look()
+        self._evaluate()
 
     def _allow(self) -> None:
         """Set the slacks, and the bounds with them; they are the usual ones where rounding is smaller."""
@@ -242,15 +244,17 @@ class SearchState:
 
     def look(self) -> None:
         """Compute the gradient at the point, unless it is known."""
-        x, statement = self.x, self.statement
-        if self._seen is x:
+        if self._seen is self.x:
             return
-        self._seen = x
-        self._passed.append(x)
+        self._passed.append(self.x)
         if len(self._passed) > MANY:
             self._take_in()
-        product = statement.bent(x)
-        self.gradient = product + statement.c
+        self._evaluate()
+
+    def _evaluate(self) -> None:
+        """Compute the gradient, and what counts as zero beside its terms."""
+        product = self.statement.bent(self.x)
+        self._seen, self.gradient = self.x, product + self.statement.c
         self._terms = max(sqrt(dot(product, product) * self._part), self._least)
         self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
 

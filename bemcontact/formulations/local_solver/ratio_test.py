@@ -22,45 +22,58 @@ class BlockingConstraint(NamedTuple):
 
 
 def nearest(
-    progress: SearchState, along: Array, length: float, held: BoolArray, working: WorkingSet | None = None
+    progress: SearchState,
+    along: Array,
+    length: float,
+    held: BoolArray,
+    working: WorkingSet | None = None,
+    end: float = INFINITY,
 ) -> BlockingConstraint | None:
     """The first constraint met by the direction and not held, by Harris' two passes; None if there is none.
 
     The first pass finds the longest step at which nothing is violated beyond its tolerance; the second takes, among the
     constraints met until then, the one that is met most steeply (Harris, Math. Programming 5 (1973) 1-28). A run that
     has stalled takes the lowest number among the ties. A constraint in the span of a working set is not met within it.
+    A step that ends at `end` in any case is no longer than that.
     """
-    speed = np.abs(along)
-    away = held | (speed <= PARALLEL * length)
-    block = _first(progress, along, speed, away)
-    if block is None or block.step * length > progress.long:
-        nearly_all = held | (speed <= FAINT * length)
-        if np.count_nonzero(nearly_all) < np.count_nonzero(away):
-            block = _first(progress, along, speed, nearly_all)
-            while working is not None and block is not None and working.spans(block.constraint):
-                nearly_all[block.constraint] = True  # what moves it is rounding
-                block = _first(progress, along, speed, nearly_all)
-    return block
-
-
-def _first(progress: SearchState, along: Array, speed: Array, away: BoolArray) -> BlockingConstraint | None:
-    """The first constraint met by the direction and not marked in `away` (n + m,)."""
     statement, values = progress.statement, progress.values
     # the bound ahead has the quotient that is not negative
     steps = np.maximum((statement.upper - values) / along, (statement.lower - values) / along)
-    steps[away] = INFINITY
+    steps[held] = INFINITY
+    block = _first(progress, along, steps, PARALLEL * length)
+    if min(end, INFINITY if block is None else block.step) * length > progress.long:
+        speed = np.abs(along)
+        slow = (speed > FAINT * length) & (speed <= PARALLEL * length)
+        if np.count_nonzero(slow > held):
+            block = _first(progress, along, steps, FAINT * length)
+            while working is not None and block is not None and working.spans(block.constraint):
+                steps[block.constraint] = INFINITY  # what moves it is rounding
+                block = _first(progress, along, steps, FAINT * length)
+    return block
+
+
+def _first(progress: SearchState, along: Array, steps: Array, faint: float) -> BlockingConstraint | None:
+    """The first constraint met, by the `steps` to each (n + m,), of those of which more than `faint` moves."""
     constraint = int(steps.argmin())
+    stalled = progress.stalled > STALLED
+    if stalled or abs(along.item(constraint)) <= faint:
+        steps = np.where(np.abs(along) <= faint, INFINITY, steps)
+        constraint = int(steps.argmin())
     least = steps.item(constraint)
     if not least < INFINITY:  # nor is there one where the values have overflowed
         return None
-    if progress.stalled > STALLED:
+    if stalled:
         constraint = int((steps <= least + 1e-13 * max(1.0, least)).argmax())
     else:
-        late = least + progress.slack.item(constraint) / speed.item(constraint)
+        late = least + progress.slack.item(constraint) / abs(along.item(constraint))
         met = (steps <= late).nonzero()[0]
         if met.size > 1:
-            met = met[steps[met] <= (steps[met] + progress.slack[met] / speed[met]).min()]
-            constraint = met.item(speed[met].argmax())
+            speed = np.abs(along[met])
+            speed[speed <= faint] = 0.0  # which is met at no time
+            near = steps[met]
+            late = near + progress.slack[met] / speed
+            speed[near > late.item(late.argmin())] = 0.0
+            constraint = met.item(speed.argmax())
     return BlockingConstraint(constraint, side_reached(progress, constraint, along), max(steps.item(constraint), 0.0))
 
 

@@ -12,8 +12,6 @@ from bemcontact.arrays import Array
 from bemcontact.formulations.local_solver.factorizations import add_rank_one, dot
 from bemcontact.formulations.local_solver.statement import INFINITY, largest
 
-SMALL = 100
-"""Number of variables up to which the largest entry is looked for at once."""
 LARGE = 250
 """Number of variables from which rows of fixed variables are not stored."""
 ROOM = 32
@@ -76,8 +74,8 @@ class RightInverse:
     def _subtract(self, column: Array, row: Array) -> None:
         """Subtract column rowᵀ."""
         add_rank_one(self._columns, -1.0, column, row)
-        if self._n > SMALL:  # lengths bound the largest entries
-            self._bound += sqrt(dot(column, column) * dot(row, row)) if row.size else 0.0
+        if row.size:  # lengths bound the largest entries
+            self._bound += sqrt(dot(column, column) * dot(row, row))
 
     @property
     def whole(self) -> Array:
@@ -92,11 +90,11 @@ class RightInverse:
     @property
     def largest(self) -> float:
         """The largest entry."""
-        return largest(self._settle())
+        return largest(self._settle().T)  # row-major
 
     def is_below(self, limit: float) -> bool:
         """Whether all entries are smaller than a limit."""
-        if self._n <= SMALL or self._bound >= limit:
+        if self._bound >= limit:
             self._bound = self.largest
         return self._bound < limit
 
@@ -152,6 +150,7 @@ class RightInverse:
     def append(self, column: Array) -> None:
         """Append a column (n,)."""
         self._settle()
+        self._bound = max(self._bound, sqrt(dot(column, column)))
         self._stored[:, self.size] = self._pack(column)
         self._resize(self.size + 1)
 

@@ -52,6 +52,19 @@ def test_a_step_ends_where_the_first_bound_is_met(seed):
     assert block.side == (2 if statement.equality[block.constraint] else np.sign(along[block.constraint]))
 
 
+def test_what_hardly_moves_is_met_on_a_long_step_alone():
+    """A component of 1e-12 reaches a bound 1e-9 away after 1000, beyond a step that ends at 1, and not one of 2000."""
+    upper = np.array([np.inf, 1e-9])
+    statement = Statement(H=np.eye(2), c=np.zeros(2), A=np.zeros((0, 2)), lower=np.full(2, -np.inf), upper=upper)
+    progress = SearchState(statement=statement, options=QPOptions(), unit=1.0, x=np.zeros(2))
+    along, held = np.array([1.0, 1e-12]), np.zeros(2, dtype=bool)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        assert nearest(progress, along, 1.0, held, end=1.0) is None
+        for block in (nearest(progress, along, 1.0, held, end=2000.0), nearest(progress, along, 1.0, held)):
+            assert block is not None
+            assert (block.constraint, block.side, block.step) == (1, 1, pytest.approx(1000.0))
+
+
 @settings(max_examples=300)
 @given(st.integers(0, 10**9))
 def test_phase_one_steps_to_the_least_sum_of_violations(seed):
@@ -67,7 +80,7 @@ def test_phase_one_steps_to_the_least_sum_of_violations(seed):
     def total(step):
         return float(statement.violation(values + step * along)[violated].sum())
 
-    inner = _breakpoint(progress, signs, along, length, np.inf)
+    inner = _breakpoint(progress, signs, along, length)
     if signs @ along >= 0.0:  # the sum does not fall
         return
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from bemcontact.arrays import exact_remainders, fine_remainders
 from bemcontact.formulations.local_solver.factorizations import orthogonal
 from bemcontact.formulations.local_solver.phase_two import ReducedHessian
-from bemcontact.formulations.local_solver.right_inverse import LARGE, ROOM, SMALL
+from bemcontact.formulations.local_solver.right_inverse import LARGE, ROOM
 from bemcontact.formulations.local_solver.statement import EPS, Statement
 from bemcontact.formulations.local_solver.working_set import TEMPORARY, WorkingSet
 
@@ -293,12 +293,23 @@ def test_the_reduced_hessian_is_definite_on_any_basis(kind):
 
 
 def test_the_bound_of_the_right_inverse_is_above_its_entries():
-    """In programs of many variables the largest entry is looked for only where a bound does not decide."""
-    data = statement(5, SMALL + 20, 60, definite=False)
-    working, hessian = start(data, [0] * (SMALL + 80))
+    """The largest entry is looked for only where a bound of it does not decide."""
+    data = statement(5, 60, 40, definite=False)
+    working, hessian = start(data, [0] * 100)
     rng = np.random.default_rng(5)
     for _ in range(60):
         change_at_random(data, working, hessian, rng)
         largest = np.abs(working.N).max(initial=0.0)
         assert not working.inverse.is_below(largest)
         assert working.inverse.is_below(1.001 * largest + 1e-300)
+
+
+def test_a_short_row_raises_the_bound_of_the_right_inverse():
+    """A row of length 1/1000 has a column of length 1000, also if it is orthogonal to the other rows."""
+    A = np.array([[1.0, 0.0, 0.0], [0.0, 1e-3, 0.0]])
+    data = Statement(H=np.eye(3), c=np.zeros(3), A=A, lower=-np.ones(5), upper=np.ones(5))
+    working = WorkingSet(data, np.array([0, 0, 0, 1, 0], dtype=np.int8))
+    assert working.inverse.is_below(2.0)
+    working.add(4, 1)
+    assert not working.inverse.is_below(999.0)
+    assert working.inverse.is_below(1001.0)
