@@ -170,8 +170,11 @@ def written_axis(text: str) -> tuple[str, list[Any]]:
     keys, equals, written = _at_equals(text)
     if not equals:
         raise OptionError(f"{text}: there is no '='; write {text}=a:b:n for n values from a to b, or {text}=v1,v2")
+    items = [item.strip() for item in _items(written)]
+    if "" in items:
+        raise OptionError(f"{text}: a value is missing behind '=' or at a comma; write null for none")
     if _title_and_keys(keys)[1] in (VARIANT, CASE):
-        return keys, [item.strip().strip(_QUOTES) for item in _items(written)]
+        return keys, [item.strip(_QUOTES) for item in items]
     if parts := _RANGE.fullmatch(written):
         return keys, _range(keys, *parts.groups())
     if parts := _RANGE_IN_UNITS.fullmatch(written):
@@ -182,7 +185,7 @@ def written_axis(text: str) -> tuple[str, list[Any]]:
     if _PART_OF_RANGE.fullmatch(written) or _OTHER_LIST.fullmatch(written):
         raise OptionError(f"{keys}: expected a:b:n for n values from a to b, or v1,v2,v3; found {written.strip()}")
     try:
-        return keys, [written_value(item, keys) for item in _items(written)]
+        return keys, [written_value(item, keys) for item in items]
     except SpecError as error:
         raise OptionError(str(error).partition("\n")[0]) from None
 

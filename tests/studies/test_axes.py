@@ -38,6 +38,9 @@ def test_written_axes_are_read(text: str, keys: str, values: list[Any]):
     ("text", "says"),
     [
         ("a", "no '='"),
+        ("a=", "a value is missing behind '='"),
+        ("a=1,2,", "a value is missing behind '=' or at a comma"),
+        ("variant=fine,,coarse", "a value is missing"),
         ("a=1:2", "expected a:b:n"),
         ("a=1:2:x", "two numbers and how many"),
         ("a=1:2:1", "at least 2"),
