@@ -109,6 +109,8 @@ def _axis(keys: object, values: object, units: Units) -> Axis:
     if not isinstance(keys, tuple):
         title, keys = _title_and_keys(text_of_argument(keys, "a key of vary"))
         keys = tuple(keys.split(","))
+    if not keys:
+        raise OptionError("a tuple of vary has no key; write one such as conditions.top.pressure")
     axis = Axis(keys=tuple(text_of_argument(key, "a key of vary").strip() for key in keys), values=(), title=title)
     if title.removesuffix("_error") in (*COLUMNS, *DIMENSIONS):
         raise OptionError(f"'{title}' is another column of the table; give the axis another name")

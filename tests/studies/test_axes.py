@@ -116,6 +116,7 @@ def test_axes_of_one_name_have_all_their_keys_in_it():
         ({"mesh_error: a": [1]}, "'mesh_error' is another column of the table"),
         ({"case: a": [1]}, "'case' is another column of the table"),  # load cases may be added to the axes
         ({}, "nothing to vary"),
+        ({(): [1]}, "has no key"),
         ([], "vary must be a Mapping"),
         ({"a": []}, "no values"),
         ({"a": "12"}, "a list of values"),
