@@ -139,12 +139,23 @@ def _title_and_keys(text: str) -> tuple[str, str]:
 
 
 def _text(name: str, value: object) -> str:
-    """Write a value as JSON, a whole number as another number; `OptionError` if it is none that JSON has."""
+    """Write a value as JSON, whole numbers as other numbers; `OptionError` if it is none that JSON has."""
     try:
-        number = float(value) if isinstance(value, int) and not isinstance(value, bool) else value
-        return json.dumps(number, sort_keys=True, allow_nan=False)
+        return json.dumps(as_floats(value), sort_keys=True, allow_nan=False)
     except (TypeError, ValueError, OverflowError):
         raise OptionError(f"{name}: numbers, texts and lists can be varied; found {shown(value)}") from None
+
+
+def as_floats(value: object) -> object:
+    """A value with whole numbers as other numbers: 20 and 20.0 are the same."""
+    match value:
+        case int() if not isinstance(value, bool):
+            return float(value)
+        case list():
+            return [*map(as_floats, value)]
+        case dict():
+            return {key: as_floats(item) for key, item in value.items()}
+    return value
 
 
 def _plain(value: object) -> Any:
