@@ -281,7 +281,8 @@ def on_element(nodes: ComplexArray, local: Array) -> Singular:
     interior = np.log((1 - inside) / (1 + inside)) - 1j * np.pi
     slope = abs(c1 + 2 * c2 * local)
     log_ratio = np.where(at_end, -local * np.log(2 * slope), interior)
-    tau = nodes[:, [0, 2]] - (nodes[:, 1] + local * (c1 + local * c2))[:, None]
+    here = local * (c1 + local * c2)  # from the middle, for short elements have their digits in differences
+    tau = np.column_stack([(c2 - c1) - here, (c2 + c1) - here])
     tau[local == -1, 0] = 0
     tau[local == 1, 1] = 0
     turn = np.divide(tau, tau.conj(), out=np.zeros_like(tau), where=tau != 0)

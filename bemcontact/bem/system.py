@@ -40,8 +40,9 @@ MachineCode = Callable[[Array, FlatPoints, FlatElements, FlatColumns, FlatRules,
 """A function with the parameters of `compiled.add_all`."""
 
 
+@lru_cache(maxsize=1)
 def numba_is_imported() -> bool:
-    """Whether something in this process has imported numba already."""
+    """Whether numba was imported before the first body of this process: no body changes the digits of the next."""
     return "numba" in sys.modules
 
 

@@ -34,12 +34,13 @@ def real(path: Path) -> Path:
 
 
 @contextmanager
-def _named(path: Path, temporary: Path) -> Iterator[None]:
+def naming(path: Path, temporary: Path | None = None) -> Iterator[None]:
     """Let errors of writing name the path, not the temporary one or none."""
     try:
         yield
     except OSError as error:
-        if error.errno is None or not str(error.filename or temporary).startswith(str(temporary)):
+        there = str(temporary or path)
+        if error.errno is None or not str(error.filename or there).startswith(there):
             raise
         raise OSError(error.errno, error.strerror, str(path)) from error
 
@@ -78,7 +79,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     _remove_abandoned(target)
     temporary = _beside(target)
     try:
-        with _named(path, temporary):
+        with naming(path, temporary):
             yield temporary
             os.replace(temporary, target)
     finally:
@@ -142,7 +143,7 @@ def whole_folder(path: Path) -> Iterator[Path]:
     temporary = _beside(target)
     with _parents(target):
         try:
-            with _named(path, temporary):
+            with naming(path, temporary):
                 temporary.mkdir()
                 yield temporary
                 _flush(temporary)

@@ -258,8 +258,8 @@ def seconds_in_words(seconds: float) -> str:
 
 
 def sentence_case(text: str) -> str:
-    """The text with a capital first letter."""
-    return text[:1].upper() + text[1:]
+    """The text with a capital first letter; not of a key, which stands before a colon."""
+    return text if text.partition(" ")[0].endswith(":") else text[:1].upper() + text[1:]
 
 
 def reference_in_words(reference: Reference) -> str:

@@ -16,7 +16,7 @@ from bemcontact.options import AskingKeywords
 from bemcontact.problems.problem import Problem
 from bemcontact.report.folder_kinds import STUDY, ensure_folder_writable
 from bemcontact.studies.cluster import ensure_dask, rows_by_dask
-from bemcontact.studies.journal import JOURNAL, Journal, opened, recorded
+from bemcontact.studies.journal import JOURNAL, Journal, alone, opened, recorded, state_of
 from bemcontact.studies.outputs import chosen, of_stress
 from bemcontact.studies.plan import StudyPlan, study_plan
 from bemcontact.studies.rows import MemberRow, row_from
@@ -142,18 +142,20 @@ def study_of_plan(
     if folder is not None:
         ensure_folder_writable(folder, STUDY)
     plan = replace(plan, stresses=of_stress(outputs))
+    seen = None if folder is None else state_of(folder / JOURNAL)
     rows = _recorded(plan, folder)
     tasks = [*tasks_of(plan, [number in rows for number in range(len(plan))])]
     with started(1 if scheduler else workers, len(tasks)) as processes:
         (ensure_possible or plan.ensure_possible)()
         if folder is not None and (processes or scheduler):  # what writes the folder is read while others solve
             threading.Thread(target=import_module, args=["bemcontact.report.folder"]).start()
-        rows = _computed(plan, folder, rows, _solved(plan, tasks, processes, scheduler), progress)
-    problem = plan.problem
-    done = Study(name=problem.title, units=problem.units, axes=plan.axes, outputs=outputs, rows=rows)
-    if folder is not None:
-        _report(progress, "report", "")
-        done.save(folder, spec)
+        with nullcontext() if folder is None else alone(folder, seen):
+            rows = _computed(plan, folder, rows, _solved(plan, tasks, processes, scheduler), progress)
+            problem = plan.problem
+            done = Study(name=problem.title, units=problem.units, axes=plan.axes, outputs=outputs, rows=rows)
+            if folder is not None:
+                _report(progress, "report", "")
+                done.save(folder, spec)
     return done
 
 

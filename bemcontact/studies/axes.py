@@ -109,6 +109,8 @@ def _axis(keys: object, values: object, units: Units) -> Axis:
     if not isinstance(keys, tuple):
         title, keys = _title_and_keys(text_of_argument(keys, "a key of vary"))
         keys = tuple(keys.split(","))
+    if not keys:
+        raise OptionError("a tuple of vary has no key; write one such as conditions.top.pressure")
     axis = Axis(keys=tuple(text_of_argument(key, "a key of vary").strip() for key in keys), values=(), title=title)
     if title.removesuffix("_error") in (*COLUMNS, *DIMENSIONS):
         raise OptionError(f"'{title}' is another column of the table; give the axis another name")
@@ -137,12 +139,23 @@ def _title_and_keys(text: str) -> tuple[str, str]:
 
 
 def _text(name: str, value: object) -> str:
-    """Write a value as JSON, a whole number as another number; `OptionError` if it is none that JSON has."""
+    """Write a value as JSON, whole numbers as other numbers; `OptionError` if it is none that JSON has."""
     try:
-        number = float(value) if isinstance(value, int) and not isinstance(value, bool) else value
-        return json.dumps(number, sort_keys=True, allow_nan=False)
+        return json.dumps(as_floats(value), sort_keys=True, allow_nan=False)
     except (TypeError, ValueError, OverflowError):
         raise OptionError(f"{name}: numbers, texts and lists can be varied; found {shown(value)}") from None
+
+
+def as_floats(value: object) -> object:
+    """A value with whole numbers as other numbers: 20 and 20.0 are the same."""
+    match value:
+        case int() if not isinstance(value, bool):
+            return float(value)
+        case list():
+            return [*map(as_floats, value)]
+        case dict():
+            return {key: as_floats(item) for key, item in value.items()}
+    return value
 
 
 def _plain(value: object) -> Any:
@@ -170,8 +183,11 @@ def written_axis(text: str) -> tuple[str, list[Any]]:
     keys, equals, written = _at_equals(text)
     if not equals:
         raise OptionError(f"{text}: there is no '='; write {text}=a:b:n for n values from a to b, or {text}=v1,v2")
+    items = [item.strip() for item in _items(written)]
+    if "" in items:
+        raise OptionError(f"{text}: a value is missing behind '=' or at a comma; write null for none")
     if _title_and_keys(keys)[1] in (VARIANT, CASE):
-        return keys, [item.strip().strip(_QUOTES) for item in _items(written)]
+        return keys, [item.strip(_QUOTES) for item in items]
     if parts := _RANGE.fullmatch(written):
         return keys, _range(keys, *parts.groups())
     if parts := _RANGE_IN_UNITS.fullmatch(written):
@@ -182,7 +198,7 @@ def written_axis(text: str) -> tuple[str, list[Any]]:
     if _PART_OF_RANGE.fullmatch(written) or _OTHER_LIST.fullmatch(written):
         raise OptionError(f"{keys}: expected a:b:n for n values from a to b, or v1,v2,v3; found {written.strip()}")
     try:
-        return keys, [written_value(item, keys) for item in _items(written)]
+        return keys, [written_value(item, keys) for item in items]
     except SpecError as error:
         raise OptionError(str(error).partition("\n")[0]) from None
 

@@ -1,5 +1,6 @@
 """The journal of a study: one line for each member that is done, so that a run that was killed can go on."""
 
+import io
 import json
 import os
 import time
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from bemcontact.errors import ProblemError
+from bemcontact.files.output import naming
 from bemcontact.serialization import Leaf, json_text
 
 JOURNAL = "members.jsonl"
@@ -48,6 +50,32 @@ def recorded(path: Path) -> dict[str, Mapping[str, Any]]:
     return rows
 
 
+def state_of(path: Path) -> tuple[int, int] | None:
+    """Number and size of a file, which change if another run writes it or puts another one there; None without one."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_size
+
+
+@contextmanager
+def alone(folder: Path, seen: tuple[int, int] | None) -> Iterator[None]:
+    """Keep other runs out of a folder, which is made; the system lets them in when this run ends, however it ends.
+
+    `ProblemError` if another run writes to the folder, or has written to its journal since that had the state `seen`.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    if not find_spec("fcntl"):  # Windows does without
+        yield
+        return
+    with (folder / JOURNAL).open("ab") as file:
+        _lock(file, folder)
+        if state_of(folder / JOURNAL) != (seen or (os.fstat(file.fileno()).st_ino, 0)):
+            raise ProblemError(f"another run has just written a study to {folder}; start again to go on from it")
+        yield
+
+
 class Journal:
     """A journal that is open for further rows.
 
@@ -55,15 +83,20 @@ class Journal:
     seconds may be lost, and a run that goes on solves them again.
     """
 
-    def __init__(self, file: IO[bytes]) -> None:
-        self._file, self._synced = file, time.monotonic()
+    def __init__(self, file: io.FileIO, path: Path) -> None:
+        self._file, self._path, self._synced = file, path, time.monotonic()
 
     def add(self, key: str, row: Leaf) -> None:
         """Write the row of a member."""
-        self._file.write(f"{json_text({'key': key, 'row': row.to_dict()}, None)}\n".encode())
-        self._file.flush()
+        self.write(f"{json_text({'key': key, 'row': row.to_dict()}, None)}\n".encode())
         if time.monotonic() - self._synced >= SYNC:
             self.sync()
+
+    def write(self, line: bytes) -> None:
+        """Write a line to its end; errors, such as that of a full disk, name the file."""
+        with naming(self._path):
+            while line:
+                line = line[self._file.write(line) :]
 
     def sync(self) -> None:
         """Wait until all rows are on the disk."""
@@ -73,21 +106,19 @@ class Journal:
 
 @contextmanager
 def opened(folder: Path) -> Iterator[Journal]:
-    """Open the journal in a folder, which is made; `ProblemError` if another run writes to it."""
+    """Open the journal in a folder, which is made."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / JOURNAL
-    with path.open("ab") as file:
-        _lock(file, folder)
-        journal = Journal(file)
-        if path.stat().st_size == 0:
-            file.write(_HEAD)
-            file.flush()
+    with path.open("ab", buffering=0) as file:
+        journal = Journal(file, path)
+        if path.stat().st_size < len(_HEAD):  # a run was killed before its first line was written to its end
+            file.truncate(0)
+            journal.write(_HEAD)
         elif not _ends_with_line(path):
-            file.write(b"\n")
+            journal.write(b"\n")
         try:
             yield journal
         finally:
-            file.flush()
             journal.sync()
 
 

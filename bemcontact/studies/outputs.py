@@ -1,5 +1,6 @@
 """Outputs of a study: numbers of a result by name, each with its error."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite
@@ -19,13 +20,19 @@ WHOLE = ("peak", "peak_x", "peak_y", "resultant_x", "resultant_y", "moment", "di
 """Outputs of the whole body."""
 OF_ZONES = ("force", "force_x", "force_y", "intervals", "start", "end", "length", "intensity", "max_shear")
 """Outputs of each contact zone, as ``force.foot``; those of a second interval are ``end.foot[1]``."""
+OF_INTERVALS = ("start", "end", "length")
+"""Those of them that each contact interval has."""
 OF_MOVERS = ("motion", "rotation")
 """Outputs of each tool and free motion, as ``motion.press``."""
+FREE = ("translation", "rotation")
+"""First words of the free motions."""
 OF_STRESS = ("von_mises", "max_shear")
 """Outputs that a row has only if one of them was asked for: the search for the largest stresses takes its time."""
 ALL_OF = {"resultant": ("resultant_x", "resultant_y")}
 """Name for several outputs -> these."""
 LENGTH, PRESSURE, LINE_FORCE, LINE_MOMENT, NUMBER = "length", "stress", "line_force", "line_moment", ""
+_FURTHER = re.compile(r"\[[1-9]\d*\]$")
+_CENTER = re.compile(r" about \([^()]*\)")  # the middle of a body depends on its mesh, which each member finds
 DIMENSIONS = {
     "peak": PRESSURE, "peak_x": LENGTH, "peak_y": LENGTH, "resultant_x": LINE_FORCE, "resultant_y": LINE_FORCE,
     "moment": LINE_MOMENT, "displacement": LENGTH, "force": LINE_FORCE, "force_x": LINE_FORCE, "force_y": LINE_FORCE,
@@ -110,7 +117,7 @@ def _of_bars(result: Result) -> Iterator[tuple[str, Reading]]:
         if bar.quantity == "displacement":
             yield "displacement", _of_bar(bar)
         elif bar.quantity in (*OF_MOVERS, "intensity") and bar.value is not None:
-            yield f"{bar.quantity}.{bar.mover or bar.zone}", _of_bar(bar)
+            yield f"{bar.quantity}.{bar.zone or _CENTER.sub('', bar.mover or '')}", _of_bar(bar)
 
 
 def _of_stresses(result: Result) -> Iterator[tuple[str, Reading]]:
@@ -156,12 +163,22 @@ def chosen(output: str | Sequence[str] | None, problem: Problem) -> tuple[str, .
         quantity, point, owner = name.partition(".")
         if quantity not in _known() or (point and quantity not in (*OF_ZONES, *OF_MOVERS)):
             raise OptionError(unknown_word("output", name, _known()))
-        if point and quantity in OF_ZONES and owner.split("[")[0] not in problem.zones:
-            if f"{quantity}_{owner}" in OF_ZONES:
-                part = f"{quantity}_{owner}"
-                raise OptionError(f"output {name}: write {part}, or {part}.{next(iter(problem.zones))}")
-            raise OptionError(f"output {name}: {unknown_word('contact zone', owner, problem.zones)}")
+        if point and quantity in OF_ZONES:
+            _ensure_of_zone(quantity, owner, problem)
+        elif point and owner not in problem.tools and not owner.startswith(FREE):
+            raise OptionError(f"output {name}: {unknown_word('tool', owner, problem.tools)}")
     return tuple(dict.fromkeys(part for name in names for part in ALL_OF.get(name, (name,))))
+
+
+def _ensure_of_zone(quantity: str, owner: str, problem: Problem) -> None:
+    """Refuse an output of a zone that the problem does not have, or of an interval where it has one for all of them."""
+    zone = _FURTHER.sub("", owner) if quantity in OF_INTERVALS else owner
+    if zone in problem.zones:
+        return
+    if f"{quantity}_{owner}" in OF_ZONES:
+        part = f"{quantity}_{owner}"
+        raise OptionError(f"output {quantity}.{owner}: write {part}, or {part}.{next(iter(problem.zones))}")
+    raise OptionError(f"output {quantity}.{owner}: {unknown_word('contact zone', zone, problem.zones)}")
 
 
 def _usual(problem: Problem) -> tuple[str, ...]:

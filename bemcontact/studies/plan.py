@@ -14,7 +14,7 @@ from bemcontact.errors import Issue, OptionError, ProblemError
 from bemcontact.options import AskingKeywords
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.wording import unknown_word
-from bemcontact.studies.axes import CASE, Axis, axes_of, located_in
+from bemcontact.studies.axes import CASE, Axis, as_floats, axes_of, located_in
 from bemcontact.version import __version__
 
 ACTING = ("conditions", "loads", "tools", "load_cases", CASE)
@@ -89,7 +89,8 @@ class StudyPlan:
     def keys(self) -> list[str]:
         """Key of each member in the journal; it depends on problem, values, version and `stresses` alone."""
         digest, written = self.digest(), {axis.name: axis.written for axis in self.axes}
-        values = (sorted((written[name], value) for name, value in self.values(i).items()) for i in range(len(self)))
+        members = map(self.values, range(len(self)))
+        values = (sorted((written[name], as_floats(value)) for name, value in its.items()) for its in members)
         texts = (json.dumps([digest, its, "stresses"] if self.stresses else [digest, its]) for its in values)
         return [hashlib.sha256(text.encode()).hexdigest()[:32] for text in texts]
 

@@ -13,7 +13,14 @@ from bemcontact.adaptivity.mesh_sizes import cut
 from bemcontact.analysis.result import Result
 from bemcontact.analysis.solve import Prepared, Stopwatch, ensure_acting, solve_prepared, solve_with
 from bemcontact.bem.body import Body
-from bemcontact.bem.condense import Condensation, CondensedTogether, Condenser, condense_together, matrix_of
+from bemcontact.bem.condense import (
+    Condensation,
+    CondensedTogether,
+    Condenser,
+    condense_together,
+    condensed,
+    matrix_of,
+)
 from bemcontact.bem.discretization import body_of
 from bemcontact.errors import BemContactError, ProblemError
 from bemcontact.options import SolveOptions
@@ -73,14 +80,15 @@ def _solved(member: Problem, condenser: Condenser) -> Result:
     ensure_acting(member)
     watch = Stopwatch()
     with watch.stage("mesh"):
-        on_mesh = stated(member.without_joints(), condenser=condenser)
+        on_mesh = stated(member, condenser=condenser)
     return solve_prepared(SolveOptions(), Prepared.on_mesh(on_mesh), watch)
 
 
 def _member(plan: StudyPlan, number: int) -> Problem | ProblemError:
-    """The problem of a member, or why its values do not go together."""
+    """The problem of a member, without joints on the mesh that it states, or why its values do not go together."""
     try:
-        return plan.member(number)
+        member = plan.member(number)
+        return member if member.adapts else member.without_joints()
     except ProblemError as error:
         return error
 
@@ -93,9 +101,12 @@ class _SharedMatrices:
     _found: dict[int, dict[int, tuple[CondensedTogether, int] | BemContactError]] = field(default_factory=dict)
 
     def condenser(self, number: int) -> Condenser:
-        """Condense a member on its stated mesh, or on that with its elements cut."""
+        """Condense a member, also with its elements cut; by itself if its contacts are those after a motion."""
+        member = self.members[number]
 
         def condense(problem: Problem) -> Condensation:
+            if problem.zones is not member.zones:
+                return condensed(problem)
             refine = problem.mesh.refine
             if refine not in self._found:
                 self._found[refine] = dict(self._together(refine))
@@ -112,7 +123,7 @@ class _SharedMatrices:
         alike = dict[object, list[tuple[int, Body]]]()
         for number, member in self.members.items():
             try:
-                body = body_of(cut(member.without_joints(), refine))
+                body = body_of(cut(member, refine))
             except BemContactError as error:
                 yield number, error
                 continue

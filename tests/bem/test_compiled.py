@@ -5,6 +5,7 @@ In a fresh tree numba compiles for about 20 s, so that tests of compiled code ar
 
 import dataclasses
 import importlib.util
+import subprocess
 import sys
 from pathlib import Path
 
@@ -194,6 +195,20 @@ def test_machine_code_is_used_where_it_pays(monkeypatch):
     assert dataclasses.replace(large, by_numba=False).machine_code is None
     monkeypatch.setattr(system_module, "numba_is_imported", lambda: True)
     assert dataclasses.replace(small).machine_code is not None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", ["pass", "import numba"])
+def test_a_large_body_changes_no_digit_of_the_next(first):
+    """Numba is used for the small one if it was imported before both, and not because the large one needed it."""
+    code = f"""
+{first}
+from bemcontact.bem import system
+assert system.numba_is_imported() or system.machine_code()
+print(system.numba_is_imported())
+"""
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=100)
+    assert out.stdout.strip() == str(first != "pass")
 
 
 @pytest.mark.slow

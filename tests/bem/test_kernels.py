@@ -97,6 +97,14 @@ def test_point_on_an_element_is_the_limit_from_outside(element, local):
     assert abs(np.concatenate([on.T[..., 0], on.U[..., 0]]) - beside).max() < 1e-7
 
 
+@pytest.mark.parametrize("local", [-1, -2 / 3, 0, 2 / 3, 1])
+def test_a_point_on_a_short_element_far_from_the_origin_keeps_all_digits(local):
+    """A shift that is exact in binary numbers changes nothing. Differences of rounded positions are off by 1e-10."""
+    short = np.array([-1, 0.25 + 0.125j, 1]) * 2.0**-20
+    here, there = (kernels.on_element(nodes[None], np.array([local])) for nodes in (short, short + (3 + 2j)))
+    assert there.end_turn == pytest.approx(here.end_turn, rel=1e-15)
+
+
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_integrals_do_not_depend_on_those_of_other_pairs(element):
     """Beside a strongly curved element, with its second root, all pairs take more Gauss points."""

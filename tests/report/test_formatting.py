@@ -50,3 +50,9 @@ def test_unit_labels():
     assert Units(length="mm", force="N").line_force == "N/mm"
     assert Units(length="mm").line_force == ""
     assert Units(length="in", force="lbf").foundation == "lbf/in³"
+
+
+def test_a_sentence_begins_with_a_capital_letter_and_a_key_does_not():
+    assert formatting.sentence_case("the body touches no surface") == "The body touches no surface"
+    assert formatting.sentence_case("contact_zones.foot.surface: turn it") == "contact_zones.foot.surface: turn it"
+    assert formatting.sentence_case("") == ""

@@ -5,6 +5,7 @@ import json
 import multiprocessing
 import signal
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -155,6 +156,22 @@ def test_one_process_and_two_find_the_same_table():
     problem = CYLINDER.with_value("accuracy", 0.01)
     one, two = (bemcontact.study(problem, VARIED, workers=workers) for workers in (1, 2))
     assert one.to_csv() == two.to_csv()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not find_spec("fcntl"), reason="Windows has no such locks")
+def test_another_run_is_kept_out_until_the_page_is_written(tmp_path: Path):
+    """It would write its rows to the journal of the folder that is about to be replaced."""
+    place, stages = tmp_path / "study", list[str]()
+
+    def enter(stage: str, _: str) -> None:
+        stages.append(stage)
+        with pytest.raises(bemcontact.ProblemError, match="another run"):
+            bemcontact.study(CYLINDER, {LOAD: [30.0]}, out=place)
+
+    bemcontact.study(CYLINDER, {LOAD: [10.0]}, out=place, progress=enter)
+    assert {*stages} == {running.STAGE, "report"}
+    assert bemcontact.study(CYLINDER, {LOAD: [30.0]}, out=place).holds is None
 
 
 @pytest.mark.parametrize("workers", [0, -1, 1.5, "2"])

@@ -38,6 +38,9 @@ def test_written_axes_are_read(text: str, keys: str, values: list[Any]):
     ("text", "says"),
     [
         ("a", "no '='"),
+        ("a=", "a value is missing behind '='"),
+        ("a=1,2,", "a value is missing behind '=' or at a comma"),
+        ("variant=fine,,coarse", "a value is missing"),
         ("a=1:2", "expected a:b:n"),
         ("a=1:2:x", "two numbers and how many"),
         ("a=1:2:1", "at least 2"),
@@ -113,11 +116,13 @@ def test_axes_of_one_name_have_all_their_keys_in_it():
         ({"mesh_error: a": [1]}, "'mesh_error' is another column of the table"),
         ({"case: a": [1]}, "'case' is another column of the table"),  # load cases may be added to the axes
         ({}, "nothing to vary"),
+        ({(): [1]}, "has no key"),
         ([], "vary must be a Mapping"),
         ({"a": []}, "no values"),
         ({"a": "12"}, "a list of values"),
         ({"a": 3.0}, "a list of values"),
         ({"a": [1, 1.0]}, "occurs twice"),
+        ({"a": [[1, 2], [1.0, 2.0]]}, "occurs twice"),
         ({"a": [float("nan")]}, "can be varied"),
         ({"a": [object()]}, "can be varied"),
         ({"a,a": [1]}, "varied twice"),

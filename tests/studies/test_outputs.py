@@ -23,7 +23,8 @@ def test_values_and_errors_are_those_of_the_error_bars():
     for bar in result.accuracy.bars:
         if bar.quantity in ("pressure", "peak"):
             continue
-        name = f"{bar.quantity}.{bar.zone or bar.mover}" if bar.zone or bar.mover else bar.quantity
+        mover = (bar.mover or "").partition(" about ")[0]
+        name = f"{bar.quantity}.{bar.zone or mover}" if bar.zone or mover else bar.quantity
         name += f"[{bar.interval}]" if bar.interval else ""
         reading = found[name]
         assert reading.value == pytest.approx(bar.value, rel=1e-6, abs=1e-12)
@@ -79,9 +80,12 @@ def test_largest_stresses_are_outputs_if_they_are_asked_for():
     assert not of_stress(["peak", "length.foot"])
 
 
-def test_motions_of_tools_are_outputs():
+def test_motions_of_tools_and_of_the_body_are_outputs():
+    """A free rotation is named without its center: this is the middle of the nodes, and each member has its mesh."""
     found = readings(bemcontact.solve(TOOLS))
-    assert any(name.startswith("motion.") and item.error is not None for name, item in found.items())
+    assert [name for name, item in found.items() if name.split(".")[0] in OF_MOVERS and item.error is not None] == [
+        "motion.translation along (0, 1)", "rotation.rotation counterclockwise", "motion.press", "rotation.press",
+    ]  # fmt: skip
 
 
 @pytest.mark.slow
@@ -99,6 +103,10 @@ def test_each_output_of_a_result_can_be_chosen():
         (["peek"], "unknown output 'peek'; did you mean 'peak'?"),
         (["peak.foot"], "unknown output 'peak.foot'"),
         (["force.leftt"], "unknown contact zone 'leftt'"),
+        (["end.wall[0]"], "unknown contact zone 'wall[0]'; did you mean 'wall'?"),
+        (["end.wall[x]"], "unknown contact zone 'wall[x]'"),
+        (["force.wall[1]"], "unknown contact zone 'wall[1]'"),  # it is the sum over all intervals
+        (["motion.press"], "unknown tool 'press'; there are none"),
         (["force.y"], "output force.y: write force_y, or force_y.drum"),
         ([], "no output is named"),
         (7, "list of texts"),

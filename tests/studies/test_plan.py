@@ -90,6 +90,7 @@ def test_a_key_depends_on_problem_and_values_alone():
     more = study_plan(CYLINDER, {MODULUS: [1000, 1500, 2000], LOAD: [20, 10]}).keys()
     assert len({*one}) == 4
     assert {*one} < {*more}
+    assert study_plan(CYLINDER, {LOAD: [10.0, 20.0], MODULUS: [1000.0, 2000.0]}).keys() == one  # as of 10:20:2
     other = study_plan(
         CYLINDER.with_value("material.poisson_ratio", 0.2), {LOAD: [10, 20], MODULUS: [1000, 2000]}
     ).keys()

@@ -15,6 +15,7 @@ from bemcontact.studies.work import Task, rows_of_task, rows_on_one_thread, task
 MODELS = Path(__file__).parents[2] / "models"
 CYLINDER = bemcontact.load(MODELS / "cylinder_on_plane.yaml", variant="stated mesh")
 WEDGE = bemcontact.load(MODELS / "gallery" / "roller_in_v_block.yaml")
+LINK = bemcontact.load(MODELS / "gallery" / "three_zones.yaml", variant="stated mesh")
 LOAD, PLACE, ROUND_OFF = "conditions.top.pressure", "contact_zones.foot.surface.point[1]", 1e-9
 
 
@@ -68,6 +69,17 @@ def test_rows_of_load_cases_are_those_of_solve():
     for row in rows(study_plan(WEDGE, {"accuracy": [0.05]})):
         alone = bemcontact.solve(WEDGE.with_case(row.values["case"]).with_value("accuracy", row.values["accuracy"]))
         assert_same(row, row_of(row.number, row.values, alone))
+
+
+def test_contacts_that_a_motion_moves_are_those_of_solve():
+    """The link slides along the drum, whose face is then elsewhere beside it: the matrix changes with the normals."""
+    plan = study_plan(LINK, {"contact_zones.drum.surface.radius": [90.0, 89.99]})
+    assert len([*plan.groups()]) == 1
+    for row in rows(plan):
+        result = bemcontact.solve(LINK.with_values(row.values))
+        as_drawn = condensing.condensed(LINK.with_values(row.values)).contact
+        assert not (result.contact.normals == as_drawn.normals).all()
+        assert_same(row, row_of(row.number, row.values, result))
 
 
 def test_a_member_that_fails_is_a_row_and_the_others_are_solved():
