@@ -49,7 +49,8 @@ def real_array(value: Any, what: str, shape: Dimensions | None = None, *, finite
 
 def _is_moderate(array: Array) -> bool:
     """Whether all entries are numbers and not too large; the square of nearly all arrays without others tells."""
-    squared = np.vdot(array, array) if array.size else 0.0
+    numbers = array.ravel(order="K")
+    squared = numbers.dot(numbers)
     return bool(squared <= LARGEST_NUMBER**2 or (np.abs(array) <= LARGEST_NUMBER).all())  # not what is not a number
 
 
@@ -143,8 +144,8 @@ def _ensure_shape(array: NDArray[Any], what: str, shape: Dimensions | None) -> N
     """Refuse another shape."""
     if shape is None or array.shape == shape:
         return
-    known = [has if want is None else want for want, has in zip(shape, array.shape, strict=False)]
-    if len(shape) != array.ndim or [*array.shape] != known:
+    known = tuple([has if want is None else want for want, has in zip(shape, array.shape, strict=False)])
+    if array.shape != known or len(shape) != len(known):
         needed = ", ".join("any" if length is None else str(length) for length in shape)
         needed = f"({needed},)" if len(shape) == 1 else f"({needed})"
         raise ProblemError(f"{what} has shape {array.shape} where {needed} is needed")

@@ -153,11 +153,12 @@ def applied_traction(condition: Condition, points: Array, normals: Array, along:
 
     `along` are their places on the edge, which a condition that varies along it needs.
     """
-    traction = np.zeros_like(points)
-    for axis, field in _given(condition.traction):
-        traction[..., axis] = _at(field, points, along)
     if condition.pressure is not None:
         traction = -_at(condition.pressure, points, along)[..., None] * normals
+    else:
+        traction = np.zeros(points.shape)
+        for axis, field in _given(condition.traction):
+            traction[..., axis] = _at(field, points, along)
     for force in condition.force:
         assert along is not None, "a force has a place on its edge"
         traction = traction + force.traction(along)

@@ -86,8 +86,10 @@ def contact_points(
 
 def _in_several(mesh: Mesh, in_zones: BoolArray) -> BoolArray:
     """Whether each node (N,) is one of elements of several zones, (zones, m)."""
+    if len(in_zones) < 2:
+        return np.zeros(len(mesh.nodes), bool)
     count = np.zeros(len(mesh.nodes), int)
-    for in_zone in in_zones if len(in_zones) > 1 else ():
+    for in_zone in in_zones:
         count[mesh.nodes_of(indices(in_zone))] += 1
     return count > 1
 
@@ -305,7 +307,7 @@ def _joined(
     sides = tied[node], np.where(opposite >= 0, tied[opposite], -1)
     first_alike = _first_alike(mesh, sides, normals, gap, tool)
     jumps = np.zeros(len(node), bool)
-    if (kinds > 0).any():  # else all bodies are alike
+    if kinds.any():  # else all bodies are alike
         of_sides = kinds[node], np.where(opposite >= 0, kinds[opposite], -1)
         jumps = _jumps(np.stack(sides, axis=1), np.stack(of_sides, axis=1), normals, tool)
         jumps |= (first_alike >= 0) & jumps[first_alike]
@@ -389,7 +391,7 @@ def _first_alike(
     """
     (near, far), first = sides, np.arange(len(gap))
     code = np.minimum(near, far) * len(mesh.nodes) + np.maximum(near, far)
-    if len(_once(code)) == len(code):
+    if len({*code.tolist()}) == len(code):
         return first
     _, place = np.unique(code, return_inverse=True)
     for j in indices(np.bincount(place)[place] > 1).tolist():

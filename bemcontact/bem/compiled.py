@@ -472,7 +472,9 @@ def add_rows(
 
 def block_size(count: int) -> int:
     """Points of each block of so many in all: whole lanes, in as few blocks as can be, but one for each thread."""
-    blocks = max(math.ceil(count / STRIDE), min(workers(), count // WORTH_A_THREAD))
+    blocks, threads = math.ceil(count / STRIDE), count // WORTH_A_THREAD
+    if threads > blocks:
+        blocks = max(blocks, min(workers(), threads))
     return LANES * math.ceil(count / (LANES * blocks))
 
 

@@ -10,7 +10,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from bemcontact.arrays import Array, IntArray, magnitudes, scalar_products, successive
+from bemcontact.arrays import Array, IntArray, indices, magnitudes, scalar_products, successive
 from bemcontact.bem.body import Body
 from bemcontact.bem.bonds import Bond, eliminate
 from bemcontact.bem.boundary_values import BoundaryState
@@ -203,7 +203,8 @@ def _notes(body: Body, parts: Sequence[CondensedPart]) -> tuple[str, ...]:
 
 def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
     """The condensed bodies, from the responses to their loadings and unit pressures."""
-    points, tools, cases, bond = body.points, body.tools, tuple(body.problem.load_cases), None
+    points, tools, bond = body.points, body.tools, None
+    zones, cases = tuple(body.problem.zones), tuple(body.problem.load_cases)
     compliance, free_displacement = observed(body, parts)
     if len(body.bonds):
         compliance, free_displacement, bond = eliminate(
@@ -220,7 +221,7 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
     gauge = fix_gauge(body.algebra, compliance=compliance, free_displacement=free_displacement)
     contact = CondensedContact(
         name=body.problem.name,
-        zone_names=tuple(body.problem.zones),
+        zone_names=zones,
         units={"length": body.problem.units.length, "force": body.problem.units.force},
         notes=_notes(body, parts),
         motion_names=body.seen.describe(),
@@ -237,7 +238,7 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
         motion_load=load[:, 0],
         initial_gap=points.gap + tools.motions @ tools.position[:, 0] if t else points.gap,
         weights=points.tributary,
-        zone_weights=points.tributary_by_zone(len(body.problem.zones)),
+        zone_weights=points.tributary_by_zone(len(zones)),
         consistent_weights=points.consistent,
         element_length_weights=points.element_length,
         held_arc=points.held_arc,
@@ -288,8 +289,9 @@ def _observe(part: CondensedPart, compliance: Array, free_displacement: Array) -
     result = np.zeros((response.columns, len(points.gap)))
     for change, column in zip(points.change.T, system.unknowns.displacement[points.node].T, strict=True):
         seen = (column >= 0) & (change != 0)
-        free = slice(None) if seen.all() else np.flatnonzero(seen)
-        result[:, free] += change[free] * response.rows(column[free]).T
+        if seen.any():
+            free = slice(None) if seen.all() else indices(seen)
+            result[:, free] += change[free] * response.rows(column[free]).T
     moved, added = result[:s].T * system.length, result[s:].T * (system.length / system.stress)
     for own, item in zip(moved.T, system.loadings, strict=True):
         if item.values.displacement.any():

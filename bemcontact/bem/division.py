@@ -63,12 +63,10 @@ class Matched(NamedTuple):
 def divided(problem: Problem) -> Division:
     """Divide all edges of a problem into its elements, each cut as its mesh says."""
     refine, edges = problem.mesh.refine, {edge.name: edge for edge in problem.edges}
-    matched, parts = (
-        [*matched_parts(problem)],
-        [part for name in (*problem.contacts, *problem.bonded) for part in problem.opposite(name)],
-    )
+    parts = [part for name in (*problem.contacts, *problem.bonded) for part in problem.opposite(name)]
     if not parts:
         return Division(fractions={name: _thirds(edge.breakpoints(refine)) for name, edge in edges.items()}, facing={})
+    matched = [*matched_parts(problem)]
     ends = {name: edge.breakpoints(1) for name, edge in edges.items()}
     for name, edge in edges.items():
         places = {end for part in parts if part.edge == name for end in part[1:3]}
@@ -119,9 +117,9 @@ def feet(item: Matched, edge: Edge, at: Array) -> Array:
 
 def _thirds(ends: Array) -> Array:
     """Start, middle and end (..., e, 3) of elements with these ends (..., e + 1)."""
-    thirds = np.empty((*ends.shape[:-1], ends.shape[-1] - 1, 3))
-    thirds[..., 0], thirds[..., 2] = ends[..., :-1], ends[..., 1:]
-    thirds[..., 1] = (thirds[..., 0] + thirds[..., 2]) / 2
+    starts, ends = ends[..., :-1], ends[..., 1:]
+    thirds = np.empty((*ends.shape, 3))
+    thirds[..., 0], thirds[..., 1], thirds[..., 2] = starts, (starts + ends) / 2, ends
     return thirds
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, ComplexArray, IntArray
-from bemcontact.bem import kernels, reference_element
+from bemcontact.bem import reference_element
 from bemcontact.bem.influence import Collocation, Influence
 
 LARGEST_ORDER = 96
@@ -35,15 +35,14 @@ class FlatPoints(NamedTuple):
     @classmethod
     def of(cls, collocation: Collocation, row: IntArray) -> Self:
         """Points with the rows (c, 2) of their equations."""
-        order = collocation.on_point.argsort(kind="stable")
         return cls(
             row=_integers(row.T),
             base=_complexes(collocation.base),
             offset=_complexes(collocation.offset),
             corner=_integers(collocation.corner),
-            on_start=_integers(collocation.on_point[order].searchsorted(np.arange(len(collocation) + 1))),
-            on_element=_integers(collocation.on_element[order]),
-            on_local=_reals(collocation.on_local[order]),
+            on_start=_integers(collocation.on_point.searchsorted(np.arange(len(collocation) + 1))),
+            on_element=_integers(collocation.on_element),
+            on_local=_reals(collocation.on_local),
         )
 
     def part(self, first: int, last: int) -> tuple[IntArray, Self]:
@@ -72,11 +71,10 @@ class FlatElements(NamedTuple):
     @classmethod
     def of(cls, influence: Influence) -> Self:
         """Elements of a boundary."""
-        z = influence.element_nodes
-        _, c1, c2 = kernels.element_coefficients(z)
+        _, c1, c2 = influence.coefficients
         return cls(
             node=_integers(influence.mesh.elements),
-            z=_complexes(z),
+            z=_complexes(influence.element_nodes),
             c1=_complexes(c1),
             c2=_complexes(c2),
             angle=_reals(influence.inner_angles),

@@ -238,7 +238,7 @@ class FreeMotions:
     @property
     def arms(self) -> Array:
         """Distance (k,) [L] from the center of a rotation at which a motion moves by its amplitude; else infinite."""
-        turns = (abs(row[2::3]).max() if self.turns(motion) else 0.0 for motion, row in enumerate(self.coefficients))
+        turns = (self._largest_turn(motion) if self.turns(motion) else 0.0 for motion in range(len(self)))
         return np.array([self.radius / turn if turn else np.inf for turn in turns], float)
 
     def direction(self, motion: int) -> Array | None:
@@ -262,8 +262,16 @@ class FreeMotions:
 
     def turns(self, motion: int) -> bool:
         """Whether something turns in a motion."""
-        size = abs(self.coefficients[motion]).max()
-        return bool(abs(self.coefficients[motion, 2::3]).max() > UNSEEN * size)
+        return self._largest_turn(motion) > UNSEEN * max(self._sizes(motion))
+
+    def _largest_turn(self, motion: int) -> float:
+        """Largest rotation times radius in a motion."""
+        return max(map(abs, self.coefficients[motion, 2::3].tolist()))
+
+    def _sizes(self, motion: int) -> list[float]:
+        """Largest coefficient of each body and tool in a motion."""
+        row = [*map(abs, self.coefficients[motion].tolist())]
+        return [*map(max, row[0::3], row[1::3], row[2::3])]
 
     def _part(self, number: int) -> RigidMotions:
         """Motions of a body or of a tool, which count on, in each of them."""
@@ -276,8 +284,9 @@ class FreeMotions:
 
     def _moving(self, motion: int) -> list[int]:
         """Bodies and tools that move in one of them."""
-        sizes = abs(self.coefficients[motion]).reshape(-1, 3).max(axis=1)
-        return np.flatnonzero(sizes > UNSEEN * sizes.max()).tolist()
+        sizes = self._sizes(motion)
+        least = UNSEEN * max(sizes)
+        return [part for part, size in enumerate(sizes) if size > least]
 
 
 def free_motions(

@@ -43,8 +43,8 @@ class Collocation:
     ----------
     base, offset : (c,) x + iy, over L0: the point is base + offset, base a node. Differences to other nodes of the same
         elements are taken from the base, which keeps their digits where elements are short
-    on_point, on_element, on_local : (q,) each: the point lies on that element at that local coordinate ξ0;
-        a node between two elements lies on both, at -1 of the one and +1 of the other
+    on_point, on_element, on_local : (q,) each, by ascending points: the point lies on that element at that local
+        coordinate ξ0; a node between two elements lies on both, at -1 of the one and +1 of the other
     corner : (c,) element that starts at a node between two elements, or -1 for other points
     """
 
@@ -120,12 +120,17 @@ class Influence:
         return self.nodes[self.mesh.elements]
 
     @cached_property
+    def coefficients(self) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """c0, c1, c2 (m,) of ζ = c0 + c1 ξ + c2 ξ² on the elements."""
+        return kernels.element_coefficients(self.element_nodes)
+
+    @cached_property
     def inner_angles(self) -> Array:
         """Angle (m,) inside the body where each element starts, of the nodes as they are here, rounded.
 
         A different rounding of an angle between short elements would act as a turn of all displacements there.
         """
-        _, c1, c2 = kernels.element_coefficients(self.element_nodes)
+        _, c1, c2 = self.coefficients
         return np.mod(np.angle(-(c1 + 2 * c2)[self.mesh.before] / (c1 - 2 * c2)), 2 * np.pi)
 
     @cached_property
@@ -307,7 +312,7 @@ class Influence:
 
     def _near_tiers(self, pairs: Array, element: IntArray) -> NDArray[np.int8]:
         """The rule for the root of each pair; where a rule has few of them, a larger one that others need."""
-        _, c1, c2 = (part[element, None] for part in kernels.element_coefficients(self.element_nodes))
+        _, c1, c2 = (part[element, None] for part in self.coefficients)
         middle = (pairs[1, 0] + 1j * pairs[1, 1]).reshape(len(element), -1)
         rho = reference_element.bernstein_parameter(kernels.root_from_middle(middle, c1, c2))
         tiers = reference_element.tier(rho.ravel())

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, IntArray, indices
+from bemcontact.arrays import Array, BoolArray, IntArray, indices, magnitudes, scalar_products
 from bemcontact.bem import reference_element
 from bemcontact.bem.division import Facing, divided
 from bemcontact.problems.conditions import Along
@@ -160,7 +160,7 @@ class Mesh:
         Where displacements are prescribed, discrete forces balance up to an error of discretization, and the constant
         ln L0 times this error enters the answer. So L0 must not depend on how the body is turned.
         """
-        return 4 * float(np.hypot(*(self.nodes - self.centroid).T).max())
+        return 4 * float(magnitudes(self.nodes - self.centroid).max())
 
     @cached_property
     def tangents(self) -> Array:
@@ -182,7 +182,7 @@ class Mesh:
     @cached_property
     def turns(self) -> Array:
         """Sine (m,) of the angle by which the boundary turns to the right where each element starts."""
-        return np.sum(self.normals[self.before, 2] * self.tangents[:, 0], axis=1) / self.jacobians[:, 0]
+        return scalar_products(self.normals[self.before, 2], self.tangents[:, 0]) / self.jacobians[:, 0]
 
     @cached_property
     def inner_angles(self) -> Array:
@@ -240,6 +240,7 @@ def build(problem: Problem) -> Mesh:
     edges = [edge for loop in loops for edge in loop]
     fractions = [division.fractions[edge.name] for edge in edges]
     counts, names = [*map(len, fractions)], [edge.name for edge in edges]
+    part_of_edge = [number for number, part in enumerate(parts) for loop in part.loops for _ in loop]
     m, first_of = sum(counts), dict(zip(names, accumulate(counts, initial=0), strict=False))
     nodes = np.empty((2, m, 2))
     for edge, own, first in zip(edges, fractions, first_of.values(), strict=True):
@@ -256,7 +257,7 @@ def build(problem: Problem) -> Mesh:
         edge_names=tuple(names),
         fractions=np.concatenate(fractions),
         edge_lengths=tuple(edge.length for edge in edges),
-        part=np.array([number for number, part in enumerate(parts) for _ in part.edges]).repeat(counts),
+        part=np.array(part_of_edge).repeat(counts),
         facing={contact: _facing(pairs, first_of, m) for contact, pairs in division.facing.items()},
     )
 

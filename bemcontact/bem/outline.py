@@ -120,12 +120,12 @@ class Outline:
     @cached_property
     def in_zones(self) -> BoolArray:
         """Which elements each contact zone has, (zones, m)."""
-        names, zones = self.mesh.edge_names, map(self.problem.edges_of, self.problem.zones)
-        of_edges = np.array([[name in edges for name in names] for edges in zones], bool).reshape(-1, len(names))
-        in_zones = of_edges[:, self.mesh.edge]
-        for number, name in enumerate(self.problem.zones):
-            if name in self.problem.contacts:
-                in_zones[number] = self._opposite(name)
+        problem, names = self.problem, self.mesh.edge_names
+        zones = [*problem.zones]
+        of_edges = [[name in edges for name in names] for edges in map(problem.edges_of, zones)]
+        in_zones = np.array(of_edges, bool).reshape(-1, len(names))[:, self.mesh.edge]
+        for contact in problem.contacts:
+            in_zones[zones.index(contact)] = self._opposite(contact)
         return in_zones
 
     def _opposite(self, contact: str) -> BoolArray:

@@ -1,6 +1,8 @@
 """Rigid motions of one body, those that no condition prevents, and their names."""
 
 from dataclasses import dataclass
+from itertools import compress
+from math import hypot
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -94,14 +96,17 @@ class RigidMotions:
 
         The size of the body is twice the radius if none is given.
         """
-        a, b, c = np.where(abs(coefficients) > 1e-9 * abs(coefficients).max(), coefficients, 0.0)
+        stated = coefficients.tolist()
+        least = 1e-9 * max(map(abs, stated))
+        a, b, c = (part if abs(part) > least else 0.0 for part in stated)
+        way = hypot(a, b)
         if c == 0:
-            length = np.hypot(a, b)
-            return f"translation along ({a / length:.4g}, {b / length:.4g})"
-        pole = self.center + self.radius / c * np.array([-b, a])
-        x, y = np.where(abs(pole) > 1e-5 * self.radius, pole, 0.0)  # the middle of the nodes depends on the mesh
+            return f"translation along ({a / way:.4g}, {b / way:.4g})"
+        x, y = self.center.tolist()
+        pole = x - self.radius / c * b, y + self.radius / c * a
+        least = 1e-5 * self.radius  # the middle of the nodes depends on the mesh
+        x, y = (at if abs(at) > least else 0.0 for at in pole)
         sense = "counterclockwise" if c > 0 else "clockwise"
-        way = np.hypot(a, b)
         if way <= FAR * abs(c) * (1.0 if half is None else half / self.radius):
             return f"rotation {sense} about ({x:.4g}, {y:.4g})"
         return f"translation along ({a / way:.4g}, {b / way:.4g}) with a small {sense} turn"
@@ -125,8 +130,8 @@ def free_rigid_motions(mesh: Mesh, held: BoundaryValues, radius: float | None = 
     The radius is that of the mesh if none is given.
     """
     center, radius = mesh.center, mesh.size / 2 if radius is None else radius
-    every = RigidMotions(coefficients=np.eye(3), center=center, radius=radius)
     free = _unheld(held.displacement_given, (mesh.nodes - center) / radius)
+    every = RigidMotions(coefficients=np.eye(3), center=center, radius=radius)
     if held.stiffness.any():
         values, vectors = short_svd(_stretched(every, mesh, held.stiffness) @ free.T)
         free = vectors[values <= HELD * max([1.0, *values[:1]])] @ free
@@ -141,8 +146,9 @@ def _unheld(given: BoolArray, places: Array) -> Array:
     of_x, of_y = places[given[:, 0], 1], places[given[:, 1], 0]
     low, high = np.array([(lever.min(), lever.max()) if len(lever) else (0.0, 0.0) for lever in (of_x, of_y)]).T
     y, x = ((low + high) / 2).tolist()
-    every = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [y, -x, 1.0]])
-    return every[[not len(of_x), not len(of_y), bool((high - low <= HELD).all())]]
+    motions = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (y, -x, 1.0)
+    free = not len(of_x), not len(of_y), bool((high - low <= HELD).all())
+    return np.array([*compress(motions, free)]).reshape(-1, 3)
 
 
 def _stretched(motions: RigidMotions, mesh: Mesh, stiffness: Array) -> Array:
@@ -159,6 +165,8 @@ def echelon(basis: Array) -> Array:
     A component that is `SLIGHT` in all rows that are left is no pivot: division by it would lose digits. A ring that
     spins about its middle has such a translation, for the middle of its nodes is beside it.
     """
+    if not len(basis):
+        return basis
     rows, size = basis.copy(), _lengths(basis)
     if len(rows) < 2:
         first = (abs(rows) >= SLIGHT * size[:, None]).argmax(axis=1)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
+from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray, indices
 from bemcontact.bem import kernels, reference_element
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.flat import FlatColumns, FlatElements, FlatPoints, FlatRules, flat_rules
@@ -122,31 +122,28 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Syst
     each along an axis, the equation along that axis is written at ξ = 2/3 of the element before and at ξ = -2/3 of
     the element after instead.
     """
-    m, before = len(mesh.elements), mesh.before
+    m, before, element = len(mesh.elements), mesh.before, np.arange(len(mesh.elements))
     ends, starts = unknowns.traction[before, 2], unknowns.traction[:, 0]
     double = (ends >= 0) & (starts >= 0) & (ends != starts)  # (m, 2), at the start node of each element
-    split = np.flatnonzero(double.any(axis=1))
-    wanted: BoolArray = np.ones((2 * m, 2), bool)
-    wanted[:m] = ~double
-    at_nodes = np.arange(2 * m).reshape(2, m).T.ravel()  # along the boundary, as blocks of rows want it
-    if len(split):
-        at_nodes = at_nodes[np.any(wanted, axis=1)[at_nodes]]
-    count, is_corner = len(at_nodes), at_nodes < m
-    number, corner = np.arange(count), np.where(is_corner, at_nodes, -1)
-    points = [(nodes[at_nodes], np.zeros(count, complex), corner, wanted[at_nodes])]
-    places = [
-        (number, at_nodes % m, np.where(is_corner, -1.0, 0.0)),
-        (number[is_corner], before[at_nodes[is_corner]], np.ones(np.count_nonzero(is_corner))),
-    ]
-    if len(split):
-        inside = np.column_stack([before[split], split]).ravel()
-        local = np.tile([OFFSET, -OFFSET], len(split))
-        base = np.repeat(nodes[split], 2)
-        offset = np.sum(reference_element.values(local) * (nodes[mesh.elements[inside]] - base[:, None]), axis=1)
-        points.append((base, offset, np.full(len(inside), -1), np.repeat(double[split], 2, axis=0)))
-        places.append((count + np.arange(len(inside)), inside, local))
-    base, offset, corner, active = (np.concatenate(part) for part in zip(*points, strict=True))
-    on_point, on_element, on_local = (np.concatenate(part) for part in zip(*places, strict=True))
+    # along the boundary, as blocks of rows want it: the start node of each element, which the one before has too, and
+    # its middle node
+    at_nodes, on_point = np.arange(2 * m).reshape(2, m).T.ravel(), np.repeat(2 * element, 3)
+    on_point[2::3] += 1
+    on_element, local = np.array([element, before, element]).T.ravel(), np.empty((m, 3))
+    local[:] = -1.0, 1.0, 0.0
+    on_local, corner, active = local.ravel(), np.where(at_nodes < m, at_nodes, -1), np.ones((2 * m, 2), bool)
+    active[::2] = ~double
+    base, offset = nodes[at_nodes], np.zeros(2 * m, complex)
+    if double.any():
+        split, kept = indices(double[:, 0] | double[:, 1]), active[:, 0] | active[:, 1]
+        inside, local = np.array([before[split], split]).T.ravel(), np.tile([OFFSET, -OFFSET], len(split))
+        at, on, number = np.repeat(nodes[split], 2), kept[on_point], kept.cumsum() - 1
+        away = np.sum(reference_element.values(local) * (nodes[mesh.elements[inside]] - at[:, None]), axis=1)
+        base, offset = np.append(base[kept], at), np.append(offset[kept], away)
+        corner = np.append(corner[kept], np.full(len(inside), -1))
+        active = np.concatenate([active[kept], np.repeat(double[split], 2, axis=0)])
+        on_point = np.append(number[on_point[on]], np.count_nonzero(kept) + np.arange(len(inside)))
+        on_element, on_local = np.append(on_element[on], inside), np.append(on_local[on], local)
     row = np.full(active.shape, -1)
     row.T[active.T] = np.arange(np.count_nonzero(active))
     collocation = Collocation(
@@ -158,19 +155,19 @@ def place_equations(mesh: Mesh, unknowns: Unknowns, nodes: ComplexArray) -> Syst
 class _Carried(NamedTuple):
     """Columns of G that belong to some unknowns: sums of rows of G transposed with factors.
 
-    Each part has every column once at most: rows of G transposed, columns, and factors (q, 1).
+    Each part has every column once at most: rows of G transposed, columns, and factors (q, 1) along both axes.
     """
 
     columns: int
-    parts: Sequence[tuple[IntArray, IntArray, Array]]
+    parts: Sequence[tuple[IntArray, IntArray, Array, Array]]
 
-    def times(self, G: Array) -> Array:
-        """Columns of the unknowns (…, q) from G transposed (3e, q)."""
-        parts = [(column, factor * G[rows]) for rows, column, factor in self.parts]
+    def times(self, G: Sequence[Array]) -> Array:
+        """Columns of the unknowns (…, q) from G transposed (3e, q) along both axes."""
+        parts = [(column, x * G[0][rows] + y * G[1][rows]) for rows, column, x, y in self.parts]
         if parts and len(parts[0][0]) == self.columns:  # each column once, in order
             (_, result), *parts = parts
         else:
-            result = np.zeros((self.columns, G.shape[1]))
+            result = np.zeros((self.columns, G[0].shape[1]))
         for column, its in parts:
             result[column] += its
         return result
@@ -220,14 +217,14 @@ class System:
     @cached_property
     def influence(self) -> Influence:
         """The integrals, with columns of G for unknown tractions and pressures and the sum for known ones."""
-        needed: BoolArray = np.asarray((self.unknowns.traction >= 0).any(axis=(1, 2)))
+        needed: BoolArray = np.asarray(self.values.traction_unknown.any(axis=1))
         needed[self.points.element] = True
         needed[self._sprung] = True
         jacobians = self.mesh.jacobians / self.length
         return Influence(
             mesh=self.mesh,
             poisson_ratio=self.material.effective_poisson_ratio,
-            traction_elements=np.flatnonzero(needed),
+            traction_elements=indices(needed),
             known=self._known_traction * jacobians[..., None],
         )
 
@@ -275,7 +272,7 @@ class System:
 
         Springs add to it at nodes with prescribed displacement.
         """
-        known = np.stack([item.values.traction - item.particular.traction for item in self.loadings])
+        known = np.array([item.values.traction - item.particular.traction for item in self.loadings])
         if len(self._sprung):
             at_nodes = [item.values.displacement[self.mesh.elements] for item in self.loadings]
             known += np.stack([*map(self.values.spring_traction, at_nodes)])
@@ -285,7 +282,7 @@ class System:
     def _known_displacement(self) -> Array:
         """Factor of F on the right (s, N, 2), with the sign that it has on the left."""
         given = [item.values.displacement - item.particular.displacement for item in self.loadings]
-        return np.stack(given) / self.length
+        return np.array(given) / self.length
 
     @cached_property
     def _jacobians(self) -> Array:
@@ -293,21 +290,18 @@ class System:
         return self.mesh.jacobians[self.influence.traction_elements] / self.length
 
     @cached_property
-    def _unit_tractions(self) -> list[_Carried]:
-        """Traction times Jacobian along each axis for unit unknown tractions."""
+    def _unit_tractions(self) -> _Carried:
+        """Traction times Jacobian for unit unknown tractions."""
         first = int((self.unknowns.displacement >= 0).sum())
         columns = self.unknowns.traction[self.influence.traction_elements] - first
-        carried, count = [], self.unknowns.size - first
-        for axis in range(2):
-            element, local = np.nonzero(columns[..., axis] >= 0)
-            factors = np.ones(len(element))
-            carried.append(self._carried(element, local, columns[element, local, axis], factors, count))
-        return carried
+        element, local, axis = np.nonzero(columns >= 0)
+        return self._carried(element, local, columns[element, local, axis], np.eye(2)[axis], self.unknowns.size - first)
 
     @cached_property
     def _sprung(self) -> IntArray:
         """Elements with springs, ascending."""
-        return np.flatnonzero(self.values.stiffness.any(axis=(1, 2, 3)))
+        sprung: BoolArray = np.asarray(self.values.stiffness.reshape(-1, 12).any(axis=1))
+        return indices(sprung)
 
     @cached_property
     def _springs(self) -> tuple[IntArray, IntArray, IntArray, Array]:
@@ -324,29 +318,29 @@ class System:
         return sprung[number], local, columns[number, local, axis], K[number, local, :, axis]
 
     @cached_property
-    def _unit_displacements(self) -> list[_Carried]:
-        """Minus the traction of springs times Jacobian along each axis for unit displacements."""
+    def _unit_displacements(self) -> _Carried:
+        """Minus the traction of springs times Jacobian for unit displacements."""
         number, local, column, factors = self._springs
         element = np.searchsorted(self.influence.traction_elements, number)
         count = int((self.unknowns.displacement >= 0).sum())
-        return [self._carried(element, local, column, each, count) for each in factors.T]
+        return self._carried(element, local, column, factors, count)
 
     @cached_property
-    def _unit_pressures(self) -> list[_Carried]:
-        """Traction times Jacobian along each axis for unit pressures."""
+    def _unit_pressures(self) -> _Carried:
+        """Traction times Jacobian for unit pressures."""
         points = self.points
         element = np.searchsorted(self.influence.traction_elements, points.element)
-        return [self._carried(element, points.local, points.pressure, t, len(points)) for t in points.traction.T]
+        return self._carried(element, points.local, points.pressure, points.traction, len(points))
 
     def _carried(self, element: IntArray, local: IntArray, column: IntArray, factors: Array, columns: int) -> _Carried:
-        """Jacobian times factors (q,) at (element, local node) pairs (q,) of columns (q,); several may be at one."""
-        values = self._jacobians[element, local] * factors
+        """Jacobian times factors (q, 2) at (element, local node) pairs (q,) of columns (q,); several may be at one."""
+        values = self._jacobians[element, local, None] * factors
         order = np.argsort(column, kind="stable")
         begins = np.searchsorted(column[order], column[order])
         number = np.arange(len(order)) - begins  # of a place among those of the same column
         rows, parts = local * len(self._jacobians) + element, []
         for some in (order[number == i] for i in range(number.max(initial=-1) + 1)):
-            parts.append((rows[some], column[some], values[some, None]))
+            parts.append((rows[some], column[some], values[some, :1], values[some, 1:]))
         return _Carried(columns, parts)
 
     def rows(self, block: InfluenceRows) -> Iterator[SystemRows]:
@@ -372,23 +366,20 @@ class System:
         """Columns of the unknowns: x displacements, y displacements, tractions."""
         first, springs = 0, None
         if len(self._sprung):
-            x, y = self._unit_displacements
-            springs = x.times(G[0]) + y.times(G[1])
+            springs = self._unit_displacements.times(G)
         for part, column in zip(F, self.unknowns.displacement.T, strict=True):
             free = column >= 0
             own = part if free.all() else part[free]
             yield own if springs is None else own + springs[first : first + len(own)]
             first += len(own)
         if self.values.traction_unknown.any():
-            x, y = self._unit_tractions
-            yield -(x.times(G[0]) + y.times(G[1]))
+            yield -self._unit_tractions.times(G)
 
     def _right(self, F: Sequence[Array], G: Sequence[Array], known: Array) -> Array:
         """The right sides b of each loading, and b_i (s + n, q); known tractions do `known` (s, q)."""
         u = self._known_displacement
         b = known - (u[..., 0] @ F[0] + u[..., 1] @ F[1]) if u.any() else known
-        x, y = self._unit_pressures
-        return np.vstack([b, x.times(G[0]) + y.times(G[1])])
+        return np.concatenate([b, self._unit_pressures.times(G)])
 
     def flat_points(self) -> FlatPoints:
         """Collocation points with their rows, as machine code wants them."""
@@ -418,7 +409,7 @@ class System:
                     displaced,
                 ]
             ),
-            traction=np.vstack(
+            traction=np.concatenate(
                 [
                     -np.eye(2)[axis] * jacobians.reshape(-1, 1)[sought],
                     pressed,
@@ -439,7 +430,7 @@ class System:
     def border(self) -> Array:
         """W (unknowns, k): the free motions at the collocation points, as rows of equations."""
         points = self.equations.collocation.points * self.length
-        at = np.column_stack([points.real, points.imag]) + self.mesh.center
+        at = points.view(float).reshape(-1, 2) + self.mesh.center
         W = np.zeros((self.unknowns.size, len(self.motions)))
         used = self.equations.row >= 0
         W[self.equations.row[used]] = self.motions.displacement(at)[used]
@@ -455,7 +446,8 @@ class System:
         for points in (self.points, *(other.points for other in like)):
             columns = self.unknowns.displacement[points.node]
             wanted[columns[(columns >= 0) & (points.change != 0)]] = True
-        return np.argsort(wanted, kind="stable"), int(wanted.sum())
+        last = indices(wanted)
+        return np.concatenate([indices(~wanted), last]), len(last)
 
     def fields(self, z: Array, loading: Loading | None) -> tuple[Array, Array]:
         """Displacement (N, 2) [L] and traction (m, 3, 2) [p] of unknowns z and all prescribed ones, less pressures.

@@ -43,6 +43,8 @@ def shown(value: object) -> str:
 
 def real_number(value: object, what: str) -> float:
     """Read one finite number of any real kind, a 0-d array included; errors call it `what`."""
+    if type(value) is float and isfinite(value):
+        return value
     single = _single(value)
     try:
         number = float(cast(Any, single)) if is_real(single) else None

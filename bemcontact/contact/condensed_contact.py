@@ -242,12 +242,8 @@ class CondensedContact(WithHints, MotionAlgebra):
 
     @property
     def _acting(self) -> tuple[Array, Array]:
-        """Factors (1 + c,) of what is permanent and of the cases, and the terms (3 t, 1 + c) of the forces on tools."""
-        factors = np.concatenate([[1.0], self.cases.factors])
-        if not len(self.tools):
-            return factors, np.zeros((0, len(factors)))
-        of_cases = self.cases.force * self.cases.factors
-        return factors, np.column_stack([_sum(self.tools.force, -of_cases), of_cases])
+        """Factors and forces as of `_loads`."""
+        return _loads(self.cases, self.tools)
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:
         """Apply load cases, each by its factor, and no other ones; nothing is condensed anew.
@@ -328,13 +324,15 @@ class CondensedContact(WithHints, MotionAlgebra):
                     f"{name} needs {tools.position.size} numbers, three for each tool; found {len(terms)}"
                 )
         loads = np.column_stack([cases.motion_load * factors, _terms(tools.amplitudes.T, force)])
+        acting = replace(cases, factors=cases.factors + factors)
         moved = replace(tools, position=_sum(tools.position, position), force=_sum(tools.force, force))
-        stepped = replace(self, cases=replace(cases, factors=cases.factors + factors), tools=moved)
         return replace(
-            stepped,
+            self,
+            cases=acting,
+            tools=moved,
             free_displacement=_sum(self.free_displacement, cases.displacement * factors),
             initial_gap=_sum(self.initial_gap, _terms(tools.motions, position)),
-            motion_load=_sum(self.motion_load, loads, self.pinned.total(*stepped._acting)),
+            motion_load=_sum(self.motion_load, loads, self.pinned.total(*_loads(acting, moved))),
         )
 
     @property
@@ -486,6 +484,15 @@ class CondensedContact(WithHints, MotionAlgebra):
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read what `save` wrote; `ProblemError` if the file is something else."""
         return archive.read(file_path(path, "the file to read"), cls)
+
+
+def _loads(cases: LoadCases, tools: Tools) -> tuple[Array, Array]:
+    """Factors (1 + c,) of what is permanent and of the cases, and the terms (3 t, 1 + c) of the forces on tools."""
+    factors = np.concatenate([[1.0], cases.factors])
+    if not len(tools):
+        return factors, np.zeros((0, len(factors)))
+    of_cases = cases.force * cases.factors
+    return factors, np.column_stack([_sum(tools.force, -of_cases), of_cases])
 
 
 def _terms(matrix: Array, columns: Array) -> Array:

@@ -210,14 +210,14 @@ def fix_gauge(motions: MotionAlgebra, compliance: Array, free_displacement: Arra
 
     With P and p0 of `MotionAlgebra`: M' = P M P and Δ1' = P (Δ1 + M p0).
     """
-    M, R, shift = compliance, motions.rigid_motions, motions.amplitudes_of(compliance)
+    M, R, inverse, ell = compliance, motions.rigid_motions, motions._inverse, motions.equilibrium.T
     n, k = R.shape
-    moved = free_displacement + M @ motions.balancing_pressure
+    shift, moved = inverse @ (ell @ M), free_displacement + M @ motions.balancing_pressure
     reduced = M - R @ shift
     return Gauge(
         compliance=reduced - (reduced @ R) @ motions.nearest if n > k else np.zeros((n, n)),
-        free_displacement=moved - R @ motions.amplitudes_of(moved) if n > k else np.zeros_like(moved),
-        shift_load=motions.amplitudes_of(free_displacement),
+        free_displacement=moved - R @ (inverse @ (ell @ moved)) if n > k else np.zeros_like(moved),
+        shift_load=inverse @ (ell @ free_displacement),
         shift_pressure=shift,
     )
 

@@ -408,8 +408,8 @@ class Problem(StatedBodies):
         Those of several bodies stay as they are stated.
         They have the same curve, conditions and zones, and state no elements. The name of the one edge has all theirs.
         """
-        if self.boundary is None:
-            return self
+        if self.boundary is None or self.boundary.meshed:
+            return self  # edges that state their elements stay as they are
         loops = [*zip(self.boundary.loop_specs, self.boundary.loops, strict=True)]
         surfaces = [zone.surface for zone in self.contact_zones.values()]
         known = [surface for surface in surfaces if not isinstance(surface, DeflectedContour)]

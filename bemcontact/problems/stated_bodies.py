@@ -265,6 +265,8 @@ class StatedBodies(SpecModel, Drawn):
     @property
     def spin_centers(self) -> Mapping[str, Point]:
         """Centers [L] of the elastic bodies that may spin and touch others: no pressure without friction spins them."""
+        if not self.contacts:
+            return {}
         both = [[_body_in(side) for side in contact.between] for contact in self.contacts.values()]
         touching = dict.fromkeys(name for pair in both if all(map(self.is_elastic, pair)) for name in pair)
         centers = {name: self._spin_center(name) for name in touching}
@@ -412,10 +414,11 @@ class StatedBodies(SpecModel, Drawn):
         ----------
         zone : name of the zone
         """
-        if zone not in self._edges:
+        known = self._edges
+        if zone not in known:
             prescribed = self._held_edges()
-            self._edges[zone] = zone_edges(self.edges, self.zones[zone], prescribed)
-        return self._edges[zone]
+            known[zone] = zone_edges(self.edges, self.zones[zone], prescribed)
+        return known[zone]
 
     def edge(self, name: str) -> Edge:
         """Edge with a name; `ProblemError` if there is none."""
