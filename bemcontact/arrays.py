@@ -40,7 +40,7 @@ def real_array(value: Any, what: str, shape: Dimensions | None = None, *, finite
         if array.dtype.kind not in "iuf" and array.size:
             raise ProblemError(f"{what} must contain real numbers; found {_described(value, array)}")
         array = np.asarray(array, dtype=float)
-    if array.shape != shape:
+    if shape not in (None, array.shape):
         _ensure_shape(array, what, shape)
     if finite and not _is_moderate(array):
         _complain(array, what)
@@ -75,17 +75,18 @@ def read_arrays(
     instance: Any, shapes: Mapping[str, Dimensions], prefix: str = "", reader: Callable[..., NDArray[Any]] = real_array
 ) -> None:
     """Read fields of a frozen dataclass as arrays with given shapes; errors call them by the prefix and their names."""
+    own = vars(instance)
     for name, shape in shapes.items():
-        object.__setattr__(instance, name, reader(getattr(instance, name), prefix + name, shape))
+        own[name] = reader(own[name], prefix + name, shape)
 
 
 def freeze_arrays(instance: Any) -> None:
     """Replace the arrays of a frozen dataclass by read-only copies, but for those that are read-only and no views."""
-    for name, value in [*vars(instance).items()]:
+    own = vars(instance)
+    for name, value in own.items():
         if isinstance(value, np.ndarray) and (value.flags.writeable or value.base is not None):
-            frozen = value.copy()
-            frozen.setflags(write=False)
-            object.__setattr__(instance, name, frozen)
+            own[name] = value.copy()
+            own[name].setflags(write=False)
 
 
 def magnitudes(vectors: Array) -> Array:

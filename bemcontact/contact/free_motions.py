@@ -8,6 +8,7 @@ import numpy as np
 import scipy
 
 from bemcontact.arrays import Array, BoolArray, least_squares, nonnegative_residual, real_array, short_svd
+from bemcontact.contact.lu import getrf, getrs
 from bemcontact.errors import ProblemError, SingularSystemError
 
 INTERFERENCE = 1e-6
@@ -164,13 +165,16 @@ class MotionAlgebra:
     @cached_property
     def _inverse(self) -> Array:
         """(ℓᵀR)⁻¹ (k, k); `SingularSystemError` if the motions are singular to working precision."""
-        try:
-            return np.asarray(np.linalg.inv(self.equilibrium.T @ self.rigid_motions), float)
-        except np.linalg.LinAlgError:
+        square = self.equilibrium.T @ self.rigid_motions
+        if not square.size:
+            return square
+        factors, pivots, singular = getrf(square)
+        if singular:
             raise SingularSystemError(
                 "the free motions are not independent of each other to working precision; give rigid_motions columns "
                 "of similar size that differ"
-            ) from None
+            )
+        return getrs(factors, pivots, np.eye(len(square)))[0]
 
     @cached_property
     def balancing_pressure(self) -> Array:
