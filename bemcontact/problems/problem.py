@@ -410,7 +410,10 @@ class Problem(StatedBodies):
         """
         if self.boundary is None:
             return self
-        loops = [*zip(self.boundary.loop_specs, self.boundary.loops, strict=True)]
+        specs = self.boundary.loop_specs
+        if all(edge.elements is not None for loop in specs for edge in loop):
+            return self
+        loops = [*zip(specs, self.boundary.loops, strict=True)]
         surfaces = [zone.surface for zone in self.contact_zones.values()]
         known = [surface for surface in surfaces if not isinstance(surface, DeflectedContour)]
         known = known if len(known) == len(surfaces) else []
@@ -420,7 +423,7 @@ class Problem(StatedBodies):
         joined = [first, *(without_joints(*loop, self._alike, known, near) for loop in others)]
         names = {part: edge.name for loop in joined for edge, parts in loop for part in parts}
         outer, *holes = whole = [tuple(edge for edge, _ in loop) for loop in joined]
-        if whole == [*map(tuple, self.boundary.loop_specs)] or len({*names.values()}) < sum(map(len, joined)):
+        if whole == [*map(tuple, specs)] or len({*names.values()}) < sum(map(len, joined)):
             return self  # or a name is taken
         data = self.model_dump(exclude={"variants", "boundary"})
         for group in (data, *data["load_cases"].values()):
