@@ -42,15 +42,9 @@ def real_array(value: Any, what: str, shape: Dimensions | None = None, *, finite
         array = np.asarray(array, dtype=float)
     if shape not in (None, array.shape):
         _ensure_shape(array, what, shape)
-    if finite and not _is_moderate(array):
-        _complain(array, what)
+    if finite and array.size and not np.vdot(array, array) <= LARGEST_NUMBER**2:  # which tells enough of nearly all
+        _ensure_moderate(array, what)
     return array
-
-
-def _is_moderate(array: Array) -> bool:
-    """Whether all entries are numbers and not too large; the square of nearly all arrays without others tells."""
-    squared = np.vdot(array, array) if array.size else 0.0
-    return bool(squared <= LARGEST_NUMBER**2 or (np.abs(array) <= LARGEST_NUMBER).all())  # not what is not a number
 
 
 def whole_array(value: Any, what: str, shape: Dimensions | None = None) -> IntArray:
@@ -151,9 +145,12 @@ def _ensure_shape(array: NDArray[Any], what: str, shape: Dimensions | None) -> N
         raise ProblemError(f"{what} has shape {array.shape} where {needed} is needed")
 
 
-def _complain(array: Array, what: str) -> None:
+def _ensure_moderate(array: Array, what: str) -> None:
     """Refuse the first entry that is not finite, or too large."""
-    place = tuple(int(i) for i in np.argwhere(~(np.abs(array) <= LARGEST_NUMBER))[0])
+    wrong = np.argwhere(~(np.abs(array) <= LARGEST_NUMBER)).tolist()
+    if not wrong:
+        return
+    place = tuple(wrong[0])
     where = f"; [{', '.join(map(str, place))}] is {array[place]:g}" if place else ""
     if np.isfinite(array).all():
         raise ProblemError(f"{what} has entries that are too large to compute with{where}; choose other units")

@@ -42,8 +42,8 @@ def typical_scales(
     norm = float(np.abs(compliance).sum(axis=1).max(initial=0.0))
     _ensure_computable("the compliance", norm)
     pressure = float(np.abs(balancing_pressure).max(initial=0.0))
-    largest = float(np.maximum(terms, np.abs(offset)).max(initial=0.0))
-    displacement = _larger(norm * pressure, offset, terms, rigid_motions) or largest or 1.0
+    displacement = _larger(norm * pressure, offset, terms, rigid_motions)
+    displacement = displacement or float(np.maximum(terms, np.abs(offset)).max(initial=0.0)) or 1.0
     scales = ContactScales(displacement, displacement / norm if norm > 0 else pressure or 1.0)
     _ensure_computable("the displacement", scales.displacement)
     _ensure_computable("the pressure", scales.pressure)

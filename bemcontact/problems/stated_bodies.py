@@ -416,10 +416,10 @@ class StatedBodies(SpecModel, Drawn):
         ----------
         zone : name of the zone
         """
-        if zone not in self._edges:
-            prescribed = self._held_edges()
-            self._edges[zone] = zone_edges(self.edges, self.zones[zone], prescribed)
-        return self._edges[zone]
+        known = self._edges
+        if zone not in known:
+            known[zone] = zone_edges(self.edges, self.zones[zone], self._held_edges())
+        return known[zone]
 
     def edge(self, name: str) -> Edge:
         """Edge with a name; `ProblemError` if there is none."""
