@@ -40,18 +40,11 @@ def real_array(value: Any, what: str, shape: Dimensions | None = None, *, finite
         if array.dtype.kind not in "iuf" and array.size:
             raise ProblemError(f"{what} must contain real numbers; found {_described(value, array)}")
         array = np.asarray(array, dtype=float)
-    if array.shape != shape:
+    if shape not in (None, array.shape):
         _ensure_shape(array, what, shape)
-    if finite and not _is_moderate(array):
-        _complain(array, what)
+    if finite and array.size and not np.vdot(array, array) <= LARGEST_NUMBER**2:  # which tells enough of nearly all
+        _ensure_moderate(array, what)
     return array
-
-
-def _is_moderate(array: Array) -> bool:
-    """Whether all entries are numbers and not too large; the square of nearly all arrays without others tells."""
-    numbers = array.ravel(order="K")
-    squared = numbers.dot(numbers)
-    return bool(squared <= LARGEST_NUMBER**2 or (np.abs(array) <= LARGEST_NUMBER).all())  # not what is not a number
 
 
 def whole_array(value: Any, what: str, shape: Dimensions | None = None) -> IntArray:
@@ -76,17 +69,18 @@ def read_arrays(
     instance: Any, shapes: Mapping[str, Dimensions], prefix: str = "", reader: Callable[..., NDArray[Any]] = real_array
 ) -> None:
     """Read fields of a frozen dataclass as arrays with given shapes; errors call them by the prefix and their names."""
+    own = vars(instance)
     for name, shape in shapes.items():
-        object.__setattr__(instance, name, reader(getattr(instance, name), prefix + name, shape))
+        own[name] = reader(own[name], prefix + name, shape)
 
 
 def freeze_arrays(instance: Any) -> None:
     """Replace the arrays of a frozen dataclass by read-only copies, but for those that are read-only and no views."""
-    for name, value in [*vars(instance).items()]:
+    own = vars(instance)
+    for name, value in own.items():
         if isinstance(value, np.ndarray) and (value.flags.writeable or value.base is not None):
-            frozen = value.copy()
-            frozen.setflags(write=False)
-            object.__setattr__(instance, name, frozen)
+            own[name] = value.copy()
+            own[name].setflags(write=False)
 
 
 def magnitudes(vectors: Array) -> Array:
@@ -151,9 +145,12 @@ def _ensure_shape(array: NDArray[Any], what: str, shape: Dimensions | None) -> N
         raise ProblemError(f"{what} has shape {array.shape} where {needed} is needed")
 
 
-def _complain(array: Array, what: str) -> None:
+def _ensure_moderate(array: Array, what: str) -> None:
     """Refuse the first entry that is not finite, or too large."""
-    place = tuple(int(i) for i in np.argwhere(~(np.abs(array) <= LARGEST_NUMBER))[0])
+    wrong = np.argwhere(~(np.abs(array) <= LARGEST_NUMBER)).tolist()
+    if not wrong:
+        return
+    place = tuple(wrong[0])
     where = f"; [{', '.join(map(str, place))}] is {array[place]:g}" if place else ""
     if np.isfinite(array).all():
         raise ProblemError(f"{what} has entries that are too large to compute with{where}; choose other units")

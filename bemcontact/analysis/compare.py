@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Unpack, cast
 
 from bemcontact.analysis.mesh_study import MeshLevel, MeshStudy, Settings
@@ -83,7 +83,7 @@ def compare(
         The problem has no answer, or does not carry the weights asked for.
     """
     ensure_callable(progress, "progress")
-    ensure_known(options, (*(item.name for item in fields(ComparisonOptions)), *ASKING))
+    ensure_known(options, (*ComparisonOptions.__dataclass_fields__, *ASKING))
     asking = cast(AskingKeywords, {key: value for key, value in options.items() if key in ASKING})
     others = cast(ComparisonKeywords, {key: value for key, value in options.items() if key not in ASKING})
     read = ComparisonOptions.of(formulations, weights, penalties, **others)

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Self, TypeVar, Unpack, cast
 
 from bemcontact.adaptivity.adapt import Meshed, meshed
@@ -201,10 +201,9 @@ def read_options(
     formulation: FormulationName | str, weights: Weights | str, options: SolvingKeywords
 ) -> tuple[SolveOptions, AskingKeywords]:
     """Options of a solution, and what is asked; `OptionError` as of `SolveOptions`."""
-    ensure_known(options, (*(item.name for item in fields(SolveOptions)), *ASKING))
-    asking, others = (
-        {key: value for key, value in options.items() if (key in ASKING) is wanted} for wanted in (True, False)
-    )
+    ensure_known(options, (*SolveOptions.__dataclass_fields__, *ASKING))
+    asking = {key: value for key, value in options.items() if key in ASKING}
+    others = {key: value for key, value in options.items() if key not in ASKING}
     return SolveOptions.of(formulation, weights, **cast(SolveKeywords, others)), cast(AskingKeywords, asking)
 
 

@@ -43,7 +43,7 @@ class ContactEquations:
     weights : (n,) D, the largest about one
     compliance, offset, rigid_motions : M (n, n) with ‖M‖∞ about one, q (n,), R (n, k)
     equilibrium, load : ℓ (n, k) with columns of length about one, and the load (k,) to match
-    offset_rest, equilibrium_rest : what rounding took from q = ε + Δ1 and from the products ℓ = J R; zero if not exact
+    offset_rest, equilibrium_rest : what rounding took from q = ε + Δ1 and from the products ℓ = J R; empty if not exact
     exact : whether all units are powers of two, and sums are rounded once
     """
 
@@ -62,9 +62,9 @@ class ContactEquations:
     def of(cls, contact: CondensedContact, *, exact: bool = False) -> Self:
         """Take the units out of a contact problem."""
         rounded = powers_of_two if exact else np.asarray
-        U, T = (float(unit) for unit in rounded(np.array(contact.scales)))
+        U, T = rounded(np.array(contact.scales)).tolist()
         length = rounded(np.linalg.norm(contact.equilibrium, axis=0))
-        offset_rest, ell_rest = np.zeros_like(contact.offset), np.zeros_like(contact.equilibrium)
+        offset_rest, ell_rest = contact.offset[:0], contact.equilibrium[:0]
         if exact:
             offset_rest = sum_remainders(contact.initial_gap, contact.free_displacement)
             ell_rest = product_remainders(contact.weights[:, None], contact.rigid_motions)

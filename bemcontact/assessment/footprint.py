@@ -263,7 +263,6 @@ def _paths(contact: CondensedContact, solution: ContactSolution) -> list[tuple[i
 def _path(contact: CondensedContact, zone: int, run: int, gap: Array, touching: NDArray[np.bool_]) -> _Path:
     """Gather the points of a run."""
     index = indices((contact.zone == zone) & (contact.run == run))
-    index = index[contact.arc_position[index].argsort(kind="stable")]
     perimeter, m = float(contact.run_length[run]), len(index)
     around, turns, first = index, 0.0, 0
     if np.isfinite(perimeter):

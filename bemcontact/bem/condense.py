@@ -52,7 +52,7 @@ class CondensedPart:
     def state(self, pressure: Array, factors: Array) -> Array:
         """Solution of its equations for pressures and bond tractions (n + b,) [p] and factors (1 + c,) of loadings."""
         own = pressure[self.system.points.number] / self.system.stress
-        return self.response.combined(np.append(factors, own))
+        return self.response.combined(np.concatenate([factors, own]))
 
     def fields(self, z: Array, loading: Loading | None) -> tuple[Array, Array]:
         """Displacement (N, 2) [L] and traction (m, 3, 2) [p] as of `System.fields`, as the body is turned."""

@@ -23,7 +23,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problems.body_surface import AnyShape, BodySurface
 from bemcontact.problems.curves import cross
-from bemcontact.problems.surface_lines import Faces, Polyline, Spline
+from bemcontact.problems.surface_lines import Closest, Faces, Polyline, Spline
 from bemcontact.problems.way import AS_DRAWN
 
 FLUSH = 1e-6
@@ -184,19 +184,18 @@ class SurfaceGaps(DisplacedSurfaces):
         m, ends = len(paired), self._ends(zone, paired)
         depth, xi, behind, hidden = np.full(m, -np.inf), np.zeros(m), np.zeros(m, bool), [-np.inf] * len(ends)
         of_zone, others = indices(paired), self.near(zone, indices(~paired & self._may_meet(zone)))
-        self.outline.sampled(np.concatenate([of_zone, others]))  # all at once
-        for elements, own in ((of_zone, True), (others, False)):
-            if not len(elements):
-                continue
-            local = self.outline.local[elements]
-            if own:
-                depths = self._depth_in_own(zone, elements)
-            else:
-                depths, behind[elements], hidden, local = self._depth_in_other(zone, elements, ends)
-                if (depths > 0).any():
-                    depths[self._beside_corner(zone, elements)] = -np.inf
-            deepest = depths.argmax(axis=1)
-            depth[elements], xi[elements] = (part[np.arange(len(elements)), deepest] for part in (depths, local))
+        elements, own = np.concatenate([of_zone, others]), len(of_zone)
+        moved, local = self.moved(elements), self.outline.local[elements]
+        there = self.exact(zone, moved[:own] if isinstance(self.surfaces[zone], BodySurface) else moved)
+        depths = np.empty(local.shape)
+        depths[:own] = self._depth_in_own(zone, of_zone, Closest(there.gap[:own], there.normals[:own]))
+        if len(others):
+            found = self._depth_in_other(zone, others, there.gap[own:], ends)
+            depths[own:], behind[others], hidden, local[own:] = found
+            if (depths[own:] > 0).any():
+                depths[own:][self._beside_corner(zone, others)] = -np.inf
+        deepest = np.arange(len(elements)), depths.argmax(axis=1)
+        depth[elements], xi[elements] = depths[deepest], local[deepest]
         excused = ~paired & (depth > 0)
         excused = excused & (depth <= self.second_order(zone)) if excused.any() else excused
         return Intrusion(
@@ -204,9 +203,9 @@ class SurfaceGaps(DisplacedSurfaces):
             ends=tuple(zip(ends, hidden, strict=True)),
         )  # fmt: skip
 
-    def _depth_in_own(self, zone: str, elements: IntArray) -> Array:
-        """Depth (k, q) [L] of elements (k,) of the zone."""
-        here, there = self.linear(zone, elements), self.exact(zone, self.moved(elements))
+    def _depth_in_own(self, zone: str, elements: IntArray, there: Closest) -> Array:
+        """Depth (k, q) [L] of elements (k,) of the zone, `there` after the motion."""
+        here = self.linear(zone, elements)
         nodes = np.maximum(here.gap[:, None, NODES], 0.0)
         # where no node touches, what dips was not seen, and is no contact
         touching = nodes.min(axis=2) <= TOUCHES * nodes.max(axis=2)
@@ -260,11 +259,12 @@ class SurfaceGaps(DisplacedSurfaces):
         return (moved <= LITTLE * self.size) & surface.beside_groove(places, moved)
 
     def _depth_in_other(
-        self, zone: str, elements: IntArray, ends: Sequence[FaceEnd]
+        self, zone: str, elements: IntArray, after: Array, ends: Sequence[FaceEnd]
     ) -> tuple[Array, BoolArray, list[float], Array]:
         """Depth (k, q) [L] of elements (k,) not of the zone at local coordinates (k, q).
 
-        Also whether each is behind, and the depth beyond each end; the local coordinates come last.
+        Also whether each is behind, and the depth beyond each end; the local coordinates come last. `after` (k, q) [L]
+        is the distance from the surface after the motion; that from a body is found here, from the one before.
         """
         flush, places, surface = FLUSH * self.size, self.outline.sampled(elements), self.surfaces[zone]
         before, normals = self.undeformed(zone, places)
@@ -283,8 +283,6 @@ class SurfaceGaps(DisplacedSurfaces):
             after = before + scalar_products(self._normals_beside_end(zone, places, against, normals), against)
             if (after < 0).any():
                 outside &= ~self._slides(zone, surface, places)
-        else:
-            after = self.exact(zone, self.moved(elements)).gap
         depth, local = np.where(outside, -after, -np.inf), self.outline.local[elements]
         for crossing in crossings:
             if crossing.turned:

@@ -420,7 +420,7 @@ class CondensedContact(WithHints, MotionAlgebra):
     def _by_point(self, values: Array, what: str, dimensions: int = 1) -> Array:
         """Refuse all but numbers by contact point (n,), or (..., n) where any number of dimensions may come first."""
         array = real_array(values, what, finite=False)
-        if array.shape[-1:] != (self.size,) or (dimensions and array.ndim != dimensions):
+        if array.shape[-1:] != self.initial_gap.shape or (dimensions and array.ndim != dimensions):
             raise ProblemError(f"{what} has shape {array.shape} where ({self.size},) is needed")
         return array
 

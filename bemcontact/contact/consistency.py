@@ -81,7 +81,8 @@ def _are_labels(contact: Any) -> bool:
         return False
     texts = [contact.name, *names, *contact.notes, *contact.motion_names, *units, *units.values()]
     return (
-        all(type(text) is str and len(text) <= LONGEST_NAME for text in texts)
+        {*map(type, texts)} == {str}
+        and max(map(len, texts)) <= LONGEST_NAME
         and hidden_character("".join(texts)) is None
         and len({*names}) == len(names)
     )

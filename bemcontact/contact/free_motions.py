@@ -8,6 +8,7 @@ import numpy as np
 import scipy
 
 from bemcontact.arrays import Array, BoolArray, least_squares, nonnegative_residual, real_array, short_svd
+from bemcontact.contact.lu import getrf, getrs
 from bemcontact.errors import ProblemError, SingularSystemError
 
 INTERFERENCE = 1e-6
@@ -41,8 +42,8 @@ def typical_scales(
     norm = float(np.abs(compliance).sum(axis=1).max(initial=0.0))
     _ensure_computable("the compliance", norm)
     pressure = float(np.abs(balancing_pressure).max(initial=0.0))
-    largest = float(np.maximum(terms, np.abs(offset)).max(initial=0.0))
-    displacement = _larger(norm * pressure, offset, terms, rigid_motions) or largest or 1.0
+    displacement = _larger(norm * pressure, offset, terms, rigid_motions)
+    displacement = displacement or float(np.maximum(terms, np.abs(offset)).max(initial=0.0)) or 1.0
     scales = ContactScales(displacement, displacement / norm if norm > 0 else pressure or 1.0)
     _ensure_computable("the displacement", scales.displacement)
     _ensure_computable("the pressure", scales.pressure)
@@ -164,13 +165,16 @@ class MotionAlgebra:
     @cached_property
     def _inverse(self) -> Array:
         """(ℓᵀR)⁻¹ (k, k); `SingularSystemError` if the motions are singular to working precision."""
-        try:
-            return np.asarray(np.linalg.inv(self.equilibrium.T @ self.rigid_motions), float)
-        except np.linalg.LinAlgError:
+        square = self.equilibrium.T @ self.rigid_motions
+        if not square.size:
+            return square
+        factors, pivots, singular = getrf(square)
+        if singular:
             raise SingularSystemError(
                 "the free motions are not independent of each other to working precision; give rigid_motions columns "
                 "of similar size that differ"
-            ) from None
+            )
+        return getrs(factors, pivots, np.eye(len(square)))[0]
 
     @cached_property
     def balancing_pressure(self) -> Array:

@@ -49,12 +49,13 @@ class ContactBlock:
     @cached_property
     def matrix(self) -> Array:
         """The matrix, with |A| + k rows and columns."""
-        A, R = self.points, self.scaled.rigid_motions
-        a, size = len(A), len(A) + R.shape[1]
-        matrix = np.zeros((size, size))
-        matrix[:a, :a] = self.scaled.compliance.take(A, axis=0).take(A, axis=1)
-        matrix[:a, a:], matrix[a:, :a] = R[A], self.scaled.equilibrium[A].T
-        return matrix
+        return self.scaled.matrix.take(self.unknowns, axis=0).take(self.unknowns, axis=1)
+
+    @cached_property
+    def unknowns(self) -> IntArray:
+        """Pressures on A and all amplitudes, as numbers (|A| + k,) of rows and columns of `ScaledContact.matrix`."""
+        n, k = self.scaled.rigid_motions.shape
+        return np.concatenate([self.points, np.arange(n, n + k)])
 
     @cached_property
     def _columns(self) -> Array:
@@ -182,7 +183,7 @@ def solve_active_set(scaled: ScaledContact, active: BoolArray) -> tuple[Array, A
     refined: a light load must not drown in the rounding of gaps.
     """
     block = ContactBlock(scaled=scaled, points=active.nonzero()[0])
-    right = -np.concatenate([scaled.offset[block.points], scaled.motion_load])
+    right = -scaled.constant[block.unknowns]
     try:
         unknowns = block.inverse(right)
     except SingularSystemError:

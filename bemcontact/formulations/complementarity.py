@@ -132,13 +132,12 @@ def standard_form(scaled: ScaledContact, near: BoolArray | None = None) -> tuple
     semidefiniteness from sym(JM) there. The result is M' (n, n), q' (n,) and the mask of B (n,). B may be given as a
     set (n,) `near` to the solution whose block is not singular: then z = 0 is near to it, and few q' are negative.
     """
-    M, R, ell, J = scaled.compliance, scaled.rigid_motions, scaled.equilibrium, scaled.weights
+    M, R, J = scaled.compliance, scaled.rigid_motions, scaled.weights
     n, k = R.shape
     B = _spanning_points(np.sqrt(J)[:, None] * R) if near is None else np.flatnonzero(near)
     b, rest = len(B), np.setdiff1d(np.arange(n), B)
     inside, order = np.append(B, n + np.arange(k)), np.append(B, rest)
-    W = np.block([[M, R], [ell.T, np.zeros((k, k))]])
-    h = np.append(scaled.offset, scaled.motion_load)
+    W, h = scaled.matrix, scaled.constant
     given = np.hstack([np.eye(b + k, b), -W[np.ix_(inside, rest)], -h[inside, None]])
     inner = np.linalg.solve(W[np.ix_(inside, inside)], given)
     gap_rest = W[np.ix_(rest, inside)] @ inner + np.hstack([np.zeros((n - b, b)), M[np.ix_(rest, rest)], h[rest, None]])

@@ -36,13 +36,13 @@ def with_chosen_position(
     """
     if not contact.free_motions or not contact.peak(solution.pressure):
         return solution
-    p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
-    pressed = p > VANISHED * p.max()
+    pressed = solution.pressure > VANISHED * solution.pressure.max()
     held = pressed if closed is None else pressed | closed
     motions = unseen_ways((contact.rigid_motions / motion_sizes(contact))[held], UNSEEN)
     if not motions.size:
         return solution
     scaled = scale(contact)
+    p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
     if not scaled.residual(p, a) <= ACCEPTED:
         return solution
     p = np.where(pressed, p, 0.0)

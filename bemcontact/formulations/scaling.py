@@ -40,14 +40,26 @@ class ScaledContact(MotionAlgebra):
         """δ = q + M p + R a, (n,)."""
         return self.offset + self.compliance @ pressure + self.rigid_motions @ amplitudes
 
+    @cached_property
+    def matrix(self) -> Array:
+        """W = [[M, R], [ℓᵀ, 0]] (n + k, n + k): W (p, a) + (q, load) is δ, then ℓᵀp + load."""
+        n, size = len(self.offset), len(self.offset) + len(self.motion_load)
+        matrix = np.zeros((size, size))
+        matrix[:n, :n], matrix[:n, n:], matrix[n:, :n] = self.compliance, self.rigid_motions, self.equilibrium.T
+        return matrix
+
+    @cached_property
+    def constant(self) -> Array:
+        """q, then the load, (n + k,)."""
+        return np.concatenate([self.offset, self.motion_load])
+
     def residual(self, pressure: Array, amplitudes: Array) -> float:
         """Largest of |min(p, δ)| and |ℓᵀp + load| / Σ|ℓ|, over the size 1 + max|p| + Σ|a| of the numbers in them."""
-        natural = abs(np.minimum(pressure, self.gap(pressure, amplitudes))).max(initial=0.0)
-        size = 1.0 + abs(pressure).max(initial=0.0)
-        if not len(amplitudes):
-            return float(natural / size)
-        balance = abs(self.equilibrium.T @ pressure + self.motion_load) / self._levers
-        return float(max(natural, balance.max()) / (size + abs(amplitudes).sum()))
+        n = len(pressure)
+        left = self.constant + self.matrix @ np.concatenate([pressure, amplitudes])
+        left[:n], left[n:] = np.minimum(pressure, left[:n]), left[n:] / self._levers
+        size = 1.0 + abs(pressure).max(initial=0.0) + abs(amplitudes).sum()
+        return float(abs(left).max(initial=0.0) / size)
 
     @cached_property
     def _levers(self) -> Array:

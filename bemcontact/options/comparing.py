@@ -1,7 +1,7 @@
 """The options of a comparison: which formulations are compared with the direct solution, with which weights."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from itertools import product
 from typing import Any, Unpack, cast
 
@@ -72,7 +72,7 @@ class ComparisonOptions:
         **options: Unpack[ComparisonKeywords],
     ) -> "ComparisonOptions":
         """Make options; unlike the constructor, it is typed for names as texts and for single items."""
-        ensure_known(options, (item.name for item in fields(cls)))
+        ensure_known(options, cls.__dataclass_fields__)
         given = {"formulations": formulations, "weights": weights, "penalties": penalties, **options}
         return cls(**cast(dict[str, Any], given))
 

@@ -1,6 +1,6 @@
 """How an option is declared: once, with its default, meaning and name in errors; and the checks of options."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import field, fields
 from difflib import get_close_matches
 from enum import StrEnum
@@ -109,7 +109,7 @@ def ensure_whole(value: object, what: str, least: int) -> None:
 
 def ensure_whole_fields(options: Any) -> None:
     """Make each whole number among the fields that is given an int; refuse other values."""
-    for item in fields(options):
+    for item in options.__dataclass_fields__.values():
         value, least = getattr(options, item.name), item.metadata["least"]
         if least is not None and value is not None:
             ensure_whole(value, item.metadata["noun"] or item.name, least)
@@ -120,14 +120,13 @@ EXPECTED_ACCURACY = "expected a relative accuracy between 0 and 1, such as 0.01 
 """Beginning of the error of an accuracy that is something else."""
 
 
-def ensure_known(options: Iterable[str], known: Iterable[str]) -> None:
+def ensure_known(options: Iterable[str], known: Collection[str]) -> None:
     """Refuse the name of an option that does not exist; list those that do."""
-    known = [*known]
     for name in options:
         if name not in known:
             word = str(name).strip("-").lower().replace("_", "-")
             meant = [own for option, words in MEANT.items() if word in words and (own := _argument(option)) in known]
-            meant = meant or get_close_matches(str(name), known, n=1)
+            meant = meant or get_close_matches(str(name), [*known], n=1)
             known_words = f"did you mean '{meant[0]}'?" if meant else f"choose from {', '.join(known)}"
             raise OptionError(f"there is no option '{name}'; {known_words}")
 

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Protocol, TypedDict, Unpack, cast, runtime_checkable
 
@@ -212,10 +212,10 @@ class SolveOptions:
 
     def __post_init__(self) -> None:
         """Read names that were given as texts; refuse what is unknown, out of range, or of no use."""
-        for item in fields(self):
-            if isinstance(item.default, StrEnum):
-                name = named(type(item.default), getattr(self, item.name), item.metadata["noun"])
-                object.__setattr__(self, item.name, name)
+        for item in self.__dataclass_fields__.values():
+            value, kind = getattr(self, item.name), type(item.default)
+            if isinstance(item.default, StrEnum) and type(value) is not kind:
+                object.__setattr__(self, item.name, named(kind, value, item.metadata["noun"]))
         if isinstance(self.start, str) and self.start in [*StartName]:
             object.__setattr__(self, "start", StartName(self.start))
         object.__setattr__(self, "penalty", penalty_of(self.penalty))
@@ -237,7 +237,7 @@ class SolveOptions:
         **options: Unpack[SolveKeywords],
     ) -> "SolveOptions":
         """Make options; unlike the constructor, it is typed for names as texts."""
-        ensure_known(options, (item.name for item in fields(cls)))
+        ensure_known(options, cls.__dataclass_fields__)
         return cls(**cast(dict[str, Any], {"formulation": formulation, "weights": weights, **options}))
 
     @property

@@ -40,8 +40,8 @@ def polygon(loop: Sequence[Edge]) -> Array:
 
 def signed_area(corners: Array) -> float:
     """Area of a polygon (k, 2), positive if it is counterclockwise."""
-    offsets = corners - corners.mean(axis=0)
-    return float(cross(offsets[:-1], offsets[1:]).sum() + cross(offsets[-1], offsets[0])) / 2
+    offsets = corners - corners[0]
+    return float(cross(offsets[:-1], offsets[1:]).sum()) / 2
 
 
 def contains(corners: Array, point: Array) -> bool:

@@ -33,9 +33,9 @@ def nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:
     if isinstance(surface, Polyline):
         return _nearest_places(curve, surface)
     key = curve, surface.way
-    if key not in surface.nearest:
-        surface.nearest[key] = _nearest_places(curve, surface)
-    return surface.nearest[key]
+    if (found := surface.nearest.get(key)) is None:
+        found = surface.nearest[key] = _nearest_places(curve, surface)
+    return found
 
 
 def _nearest_places(curve: Curve, surface: AnyShape) -> tuple[float, ...]:

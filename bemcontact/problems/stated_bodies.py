@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import Any, Self
 
 import numpy as np
@@ -162,7 +163,7 @@ class StatedBodies(SpecModel, Drawn):
     @property
     def edges(self) -> tuple[Edge, ...]:
         """All edges of the elastic bodies in order of the loops, with the names that they have in the problem."""
-        return tuple(edge for loop in self.loops for edge in loop)
+        return tuple(chain.from_iterable(self.loops))
 
     @property
     def size(self) -> float:
@@ -203,11 +204,12 @@ class StatedBodies(SpecModel, Drawn):
     @property
     def zones(self) -> Mapping[str, ContactZone | BodyZone]:
         """The contact zones, then the contacts between bodies as zones on the surface of the second body."""
-        if self.contacts and not self._zones:
-            self._zones.update(self.contact_zones)
+        zones = self._zones
+        if self.contacts and not zones:
+            zones.update(self.contact_zones)
             of_contacts = {name: self._zone_of(item.between, item.gap) for name, item in self.contacts.items()}
-            self._zones.update(approached(of_contacts, self.bonded_groups))
-        return self._zones or self.contact_zones
+            zones.update(approached(of_contacts, self.bonded_groups))
+        return zones or self.contact_zones
 
     @property
     def bonded_groups(self) -> dict[str, str]:
@@ -416,8 +418,7 @@ class StatedBodies(SpecModel, Drawn):
         """
         known = self._edges
         if zone not in known:
-            prescribed = self._held_edges()
-            known[zone] = zone_edges(self.edges, self.zones[zone], prescribed)
+            known[zone] = zone_edges(self.edges, self.zones[zone], self._held_edges())
         return known[zone]
 
     def edge(self, name: str) -> Edge:

@@ -64,3 +64,15 @@ def test_gap_and_equilibrium_are_the_users_over_their_scales():
     balance = scaled.equilibrium.T @ (p / problem.scales.pressure) + scaled.motion_load
     users = (problem.equilibrium.T @ p + problem.motion_load) / problem.scales.pressure / problem.weights.max()
     np.testing.assert_allclose(balance * np.abs(problem.rigid_motions).max(axis=0), users, rtol=1e-11)
+
+
+@pytest.mark.parametrize("k", [0, 1, 2])
+def test_one_matrix_has_gaps_and_imbalance(k):
+    """The product with the matrix is the gap, then what is missing of equilibrium, which are known by themselves."""
+    scaled, rng = scale(contact(k=k)), np.random.default_rng(1)
+    p, a = rng.standard_normal(len(scaled.offset)), rng.standard_normal(k)
+    both = np.append(scaled.gap(p, a), scaled.imbalance(p))
+    np.testing.assert_allclose(scaled.matrix @ np.append(p, a) + scaled.constant, both, rtol=1e-13, atol=1e-13)
+    lever = np.abs(scaled.equilibrium).sum(axis=0)
+    largest = max(np.abs(np.minimum(p, both[:8])).max(), *np.abs(both[8:] / lever), 0.0)
+    assert scaled.residual(p, a) == pytest.approx(largest / (1 + np.abs(p).max() + np.abs(a).sum()), rel=1e-12)

@@ -27,6 +27,7 @@ from bemcontact.problems import (
     Units,
 )
 from bemcontact.problems.problem import MeshDensity
+from bemcontact.problems.way import AS_DRAWN, Way
 
 
 def test_a_problem_prints_one_line():
@@ -322,3 +323,12 @@ def test_contour_is_checked_against_the_body():
     assert_states(unknown, "contact_zones.foot.surface.conditions.tap: unknown … 'tap' … 'top'")
     (away,) = issues(contact_zones=on_its_contour(direction=[0, -3]))
     assert_states(away, "contact_zones.foot.surface: … normal … at 'arc' … reverse the direction: [0, 3]")
+
+
+def test_surfaces_are_after_the_motions_of_a_copy():
+    """Also where no two bodies touch; the problem itself keeps its surfaces as they are drawn."""
+    problem = Problem(**parts())
+    (zone,) = problem.zones
+    moved = problem.after_motions({zone: Way(0.0, -0.5)})
+    assert moved.zones[zone].surface.way == Way(0.0, -0.5)
+    assert problem.zones[zone].surface.way == AS_DRAWN
