@@ -237,17 +237,8 @@ class CondensedContact(WithHints, MotionAlgebra):
     @property
     def net_load(self) -> float:
         """Largest work of the loads in a free motion, over the sum of their magnitudes; 1 if these are not known."""
-        total = self.pinned.total(*self._acting)
+        total = self.pinned.total(*_acting(self.cases, self.tools))
         return float(abs(self.motion_load).max(initial=0.0)) / total if total > 0 else 1.0
-
-    @property
-    def _acting(self) -> tuple[Array, Array]:
-        """Factors (1 + c,) of what is permanent and of the cases, and the terms (3 t, 1 + c) of the forces on tools."""
-        factors = np.concatenate([[1.0], self.cases.factors])
-        if not len(self.tools):
-            return factors, np.zeros((0, len(factors)))
-        of_cases = self.cases.force * self.cases.factors
-        return factors, np.column_stack([_sum(self.tools.force, -of_cases), of_cases])
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:
         """Apply load cases, each by its factor, and no other ones; nothing is condensed anew.
@@ -308,7 +299,7 @@ class CondensedContact(WithHints, MotionAlgebra):
 
     def balanced(self) -> Self:
         """Refuse loads along a motion that nothing resists, with a `ProblemError`."""
-        if violation := self.pinned.violation(*self._acting, self.units):
+        if violation := self.pinned.violation(*_acting(self.cases, self.tools), self.units):
             raise ProblemError(violation)
         return self
 
@@ -329,12 +320,14 @@ class CondensedContact(WithHints, MotionAlgebra):
                 )
         loads = np.column_stack([cases.motion_load * factors, _terms(tools.amplitudes.T, force)])
         moved = replace(tools, position=_sum(tools.position, position), force=_sum(tools.force, force))
-        stepped = replace(self, cases=replace(cases, factors=cases.factors + factors), tools=moved)
+        stepped = replace(cases, factors=cases.factors + factors)
         return replace(
-            stepped,
+            self,
+            cases=stepped,
+            tools=moved,
             free_displacement=_sum(self.free_displacement, cases.displacement * factors),
             initial_gap=_sum(self.initial_gap, _terms(tools.motions, position)),
-            motion_load=_sum(self.motion_load, loads, self.pinned.total(*stepped._acting)),
+            motion_load=_sum(self.motion_load, loads, self.pinned.total(*_acting(stepped, moved))),
         )
 
     @property
@@ -498,3 +491,12 @@ def _sum(start: Array, terms: Array, least: float = 0.0) -> Array:
     total = start + terms.sum(axis=1)
     size = np.maximum(abs(start) + abs(terms).sum(axis=1), least)
     return np.where(abs(total) > CANCELLED * size, total, 0.0)
+
+
+def _acting(cases: LoadCases, tools: Tools) -> tuple[Array, Array]:
+    """Factors (1 + c,) of what is permanent and of the cases, and the terms (3 t, 1 + c) of the forces on tools."""
+    factors = np.concatenate([[1.0], cases.factors])
+    if not len(tools):
+        return factors, np.zeros((0, len(factors)))
+    of_cases = cases.force * cases.factors
+    return factors, np.column_stack([_sum(tools.force, -of_cases), of_cases])
