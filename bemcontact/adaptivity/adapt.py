@@ -182,8 +182,11 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
 
             coarse = search.fitted(MOST_UNKNOWNS, tell)
             if number == 1 and (there := with_resting_contacts(coarse, condensed)) is not coarse:
-                search = MeshSearch.fitted_to(problem.on_contacts_of(there.body.problem), there)
-                coarse = search.fitted(MOST_UNKNOWNS, tell)
+                if search.goes_on_with(there):
+                    coarse = there
+                else:
+                    search = MeshSearch.fitted_to(problem.on_contacts_of(there.body.problem), there)
+                    coarse = search.fitted(MOST_UNKNOWNS, tell)
             elif number == 1 and after_motion(coarse)[1]:
                 steps = 0  # contacts never come to rest
             if 2 * coarse.counted_unknowns > MOST_UNKNOWNS:

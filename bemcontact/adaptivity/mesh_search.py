@@ -75,6 +75,20 @@ class MeshSearch(MeshSizes):
         moved = type(self).of(self.problem.on_contacts_of(problem))
         self.problem, self.marks, self.joints, self.facing = moved.problem, moved.marks, moved.joints, moved.facing
 
+    def goes_on_with(self, answer: Solved) -> bool:
+        """Take over contacts from an answer on this mesh, if it needs no other one for them; else change nothing.
+
+        Elements of a body that follow those of another one have to be found anew.
+        """
+        ends, spots = self.ends_of_contact(answer)
+        if self.facing or spots or not self._resting(ends) or [*self._between(answer)]:
+            return False
+        moved = type(self).of(self.problem.on_contacts_of(answer.body.problem))
+        if moved.marks != self.marks:
+            return False
+        self.problem, self.last = moved.problem, answer
+        return True
+
     def halve(self) -> None:
         """Halve all elements."""
         self.sources = [[limit._replace(size=limit.size / 2) for limit in own] for own in self.sources]

@@ -860,6 +860,21 @@ def test_a_search_that_begins_at_the_ends_of_an_answer_rests_there_at_once():
     assert again.degrees_of_freedom == last.degrees_of_freedom
 
 
+def test_a_mesh_is_kept_for_contacts_that_leave_its_ends_of_contact_at_rest():
+    """Then the answer on it is the first one of the search with these contacts; else nothing is changed."""
+    search = MeshSearch.of(half_disk(2000.0).with_value("accuracy", 0.01))
+    last = search.fitted(4000, lambda _: None)
+    before = search.problem
+    (end, count), *others = search.layers
+    search.layers = [(replace(end, position=end.position + end.width / 10), count), *others]
+    assert not search.goes_on_with(last)
+    assert search.problem is before
+    search.layers = [(end, count), *others]
+    assert search.goes_on_with(last)
+    assert search.last is last
+    assert [edge.ends_at for edge in search.mesh().edges] == [edge.ends_at for edge in last.body.problem.edges]
+
+
 @pytest.mark.parametrize(
     ("count", "moved", "rests"), [(1, 0.9, True), (1, 1.1, False), (2, 0.9, True), (2, 1.1, False), (0.5, 7.9, True)]
 )
