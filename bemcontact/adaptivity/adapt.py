@@ -7,7 +7,7 @@ import numpy as np
 
 from bemcontact.adaptivity.coarse_mesh import CoarseMesh, unknown
 from bemcontact.adaptivity.error_bars import SAFETY, error_bars, resolved
-from bemcontact.adaptivity.fields import MeshDifference, Solved, solved, solved_state
+from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved, solved, solved_state
 from bemcontact.adaptivity.hidden_changes import told_apart
 from bemcontact.adaptivity.mesh_search import MeshSearch
 from bemcontact.adaptivity.mesh_sizes import MOST_UNKNOWNS, cut
@@ -47,6 +47,8 @@ class Meshed:
     accuracies: tuple[Accuracy, ...]
     singular: tuple[tuple[Singularity, ...], ...] = ()
     """Infinite pressures that the search recognized, under each load case; empty for a stated mesh."""
+    answers: tuple[CaseAnswer, ...] = ()
+    """Answers of the direct solver on this mesh under each load case, whose errors are those above; else empty."""
 
     @property
     def worst(self) -> float:
@@ -133,7 +135,7 @@ def stated(
         accuracies = [Accuracy.of(asked, 1, its) for its in bars]
     except (ProblemError, SingularSystemError, SolverError) as error:
         accuracies = [Accuracy(asked=asked, reason=str(error).splitlines()[0])] * len(own.answers)
-    return Meshed(problem=problem, condensation=own.condensation, accuracies=tuple(accuracies))
+    return Meshed(problem=problem, condensation=own.condensation, accuracies=tuple(accuracies), answers=own.answers)
 
 
 def _tells_its_error(difference: MeshDifference) -> bool:
@@ -180,8 +182,11 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
 
             coarse = search.fitted(MOST_UNKNOWNS, tell)
             if number == 1 and (there := with_resting_contacts(coarse, condensed)) is not coarse:
-                search = MeshSearch.fitted_to(problem.on_contacts_of(there.body.problem), there)
-                coarse = search.fitted(MOST_UNKNOWNS, tell)
+                if search.goes_on_with(there):
+                    coarse = there
+                else:
+                    search = MeshSearch.fitted_to(problem.on_contacts_of(there.body.problem), there)
+                    coarse = search.fitted(MOST_UNKNOWNS, tell)
             elif number == 1 and after_motion(coarse)[1]:
                 steps = 0  # contacts never come to rest
             if 2 * coarse.counted_unknowns > MOST_UNKNOWNS:
@@ -208,6 +213,7 @@ def _found(problem: Problem, progress: Callable[[str], object], passes: int = MO
             condensation=fine.condensation,
             accuracies=tuple(Accuracy.of(asked, number, its) for its in bars),
             singular=tuple(map(tuple, singular)),
+            answers=fine.answers,
         )
         progress(f"pass {number}, {fine.degrees_of_freedom} unknowns, error at most {100 * now.worst:.2g} %")
         best = now if best is None or moved or now.worst <= best.worst else best

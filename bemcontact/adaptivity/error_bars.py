@@ -27,7 +27,7 @@ INTENSITY, INTENSITY_FLOOR = 3.0, 5.0
 UNKNOWN_EXPONENT = 0.01
 """Least error of the intensity if its exponent is measured."""
 NOTHING = 1e-9
-"""Motion or difference over the largest displacement that is round-off."""
+"""Motion or difference over the largest displacement, or of the pressure over itself, that is round-off."""
 
 LEAST_POINTS = 5
 """Points in contact in an interval, those of two elements, below which bisecting elements does not tell the error."""

@@ -13,7 +13,7 @@ from bemcontact.assessment.footprint import footprint
 from bemcontact.bem import reference_element
 from bemcontact.bem.body import Body
 from bemcontact.bem.boundary_values import BoundaryState
-from bemcontact.bem.condense import Condensation, boundary_change, boundary_state, condensed
+from bemcontact.bem.condense import Condensation, boundary_changes, boundary_state, condensed
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.surface_gaps import surface_gaps
@@ -22,7 +22,7 @@ from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import SingularSystemError, SolverError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.active_set import ContactBlock
-from bemcontact.formulations.scaling import scale, scaled_change, unscaled
+from bemcontact.formulations.scaling import scale, scaled_change, unscaled_point
 from bemcontact.problems.problem import Problem
 
 SLIT = 1e-3
@@ -116,9 +116,8 @@ class CaseAnswer:
             pressures, _, amplitudes = block.solve(*moved)
         except SingularSystemError:
             return
-        for p, a in zip(pressures, amplitudes, strict=True):
-            change, _, motion = unscaled(contact, p, a)
-            yield boundary_change(self.condensation, change, motion)
+        changes = [unscaled_point(contact, p, a) for p, a in zip(pressures, amplitudes, strict=True)]
+        yield from boundary_changes(self.condensation, *map(np.array, zip(*changes, strict=True)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -6,7 +6,7 @@ from typing import Self
 
 import numpy as np
 
-from bemcontact.adaptivity.error_bars import SAFETY, near_singularities
+from bemcontact.adaptivity.error_bars import NOTHING, SAFETY, near_singularities
 from bemcontact.adaptivity.fields import MeshDifference, Solved, most_of, norm_squared, penetrations, solved
 from bemcontact.adaptivity.first_sizes import SizedOutline
 from bemcontact.adaptivity.hidden_changes import hiding
@@ -74,6 +74,20 @@ class MeshSearch(MeshSizes):
         """Go on with contacts as they are in another problem; corners of surfaces are opposite to other places."""
         moved = type(self).of(self.problem.on_contacts_of(problem))
         self.problem, self.marks, self.joints, self.facing = moved.problem, moved.marks, moved.joints, moved.facing
+
+    def goes_on_with(self, answer: Solved) -> bool:
+        """Take over contacts from an answer on this mesh, if it needs no other one for them; else change nothing.
+
+        Elements of a body that follow those of another one have to be found anew.
+        """
+        ends, spots = self.ends_of_contact(answer)
+        if self.facing or spots or not self._resting(ends) or [*self._between(answer)]:
+            return False
+        moved = type(self).of(self.problem.on_contacts_of(answer.body.problem))
+        if moved.marks != self.marks:
+            return False
+        self.problem, self.last = moved.problem, answer
+        return True
 
     def halve(self) -> None:
         """Halve all elements."""
@@ -215,11 +229,17 @@ class MeshSearch(MeshSizes):
         return OUTSIDE * (SAFETY / 4 / self.problem.asked_accuracy) ** (1 / 3)
 
     def _change_of_pressure(self, difference: MeshDifference, singular: Sequence[Singularity]) -> Array:
-        """Change of the pressure (m,) that elements can mend; where the layers of an end can, they become more."""
+        """Change of the pressure (m,) that elements can mend; where the layers of an end can, they become more.
+
+        None is left where the whole change is round-off, as of a pressure that is uniform: which element has most of
+        it must not decide on the mesh.
+        """
         coarse, (one, _) = difference.coarse, difference.pair
         change = difference.pressure_squared.copy()
         for zone, own in enumerate(one.pressure):
-            change[zone] /= norm_squared(coarse, own).sum() or 1.0
+            square = norm_squared(coarse, own).sum()
+            told = change[zone].sum() > NOTHING**2 * square
+            change[zone] *= told / (square or 1.0)
         change = change.sum(axis=0)
         change[near_singularities(coarse, one, singular)] = 0.0
         total = change.sum()

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, IntArray
 from bemcontact.problems.curves import Edge
 
 GROWTH = 1.2
@@ -26,8 +26,6 @@ RESOLUTION = 0.5
 """Largest step of the samples of the size, over the size."""
 SAME = 1e-9
 """Relative difference of two lengths below which round-off decides which one is longer."""
-IN_CACHE = 64
-"""Positions that are compared with all limits at once."""
 NEAREST = 1e-9
 """Least element over its edge: ten times the least that an edge can be divided into."""
 
@@ -57,15 +55,18 @@ class Layers:
     count: float
     after: bool
 
-    def at(self, beyond: Array, growth: float) -> Array:
-        """Size at distances (k,) from the end of contact, negative before it; at the end itself that in contact."""
-        d, w = np.abs(beyond), self.width
-        touching = ((beyond > 0) == self.after) | (d <= SAME * w)
-        n = np.where(touching, self.count, self.count / OUTSIDE)
-        inside = np.maximum.reduce(
-            [w / n**3, np.full_like(d, SHORTEST * w), 3 / n * np.cbrt(w * np.minimum(d, w) ** 2)]
-        )
-        return inside + growth * np.maximum(d - w, 0.0)
+
+def layer_sizes(layers: Sequence[Layers], beyond: Array, growth: float) -> Array:
+    """Sizes (k, l) that each of the layers asks for at distances (k, l) from its end of contact, negative before it.
+
+    At the end itself it is that in contact.
+    """
+    w, n, after = np.array([(item.width, item.count, item.after) for item in layers]).T
+    d = np.abs(beyond)
+    touching = ((beyond > 0) == (after > 0)) | (d <= SAME * w)
+    n = np.where(touching, n, n / OUTSIDE)
+    inside = np.maximum.reduce([w / n**3, SHORTEST * w + np.zeros_like(d), 3 / n * np.cbrt(w * np.minimum(d, w) ** 2)])
+    return inside + growth * np.maximum(d - w, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -98,31 +99,11 @@ class Loop:
 
     def size_at(self, positions: Array, limits: Array, layers: Sequence[Layers]) -> Array:
         """Element size (k,) at positions (k,): the least that any limit, a row of (l, 3), and the layers allow."""
-        (low, high, size), least = limits.T, np.empty(len(positions))
-        for first in range(0, len(positions), IN_CACHE):
-            some = slice(first, first + IN_CACHE)
-            offset = self._forwards(positions[some], low)
-            beyond = self.length - offset
-            np.minimum(beyond, np.subtract(offset, high - low, out=offset), out=beyond)
-            np.maximum(beyond, 0.0, out=beyond)
-            beyond *= self.growth
-            beyond += size
-            beyond.min(axis=1, out=least[some])
-        for layer in layers:
-            offset = self._forwards(positions, np.array([layer.position]))[:, 0]
-            after = offset <= self.length / 2
-            np.minimum(least, layer.at(np.where(after, offset, offset - self.length), self.growth), out=least)
-        return least
+        return SizeField(loop=self, limits=limits, layers=layers).at(positions)
 
-    def _forwards(self, positions: Array, starts: Array) -> Array:
+    def forwards(self, positions: Array, starts: Array) -> Array:
         """Distances (k, l) [L] forwards along the loop from starts (l,) to positions (k,), modulo its length."""
-        length, offset = self.length, positions[:, None] - starts
-        if not offset.size:
-            return offset
-        if positions.min() - starts.max() >= -length and positions.max() - starts.min() < length:
-            offset += (offset < 0) * length  # a tenth of the time of `mod`
-            return offset
-        return np.mod(offset, length)
+        return np.mod(positions[:, None] - starts, self.length)
 
     def without_idle(self, limits: Array) -> Array:
         """The limits (l, 3) without those that others make idle, the smallest first, of equal ones the first.
@@ -151,7 +132,7 @@ class Loop:
         least = np.empty(len(at))
         least[order] = np.minimum(before[here - 1] + self.growth * at, after[here + 1] - self.growth * at)
         least = np.where(wide, np.nan, least[: len(limits)])
-        inside = self._forwards(low, low[wide]) <= (high - low)[wide]
+        inside = self.forwards(low, low[wide]) <= (high - low)[wide]
         return np.minimum(least, np.where(inside, size[wide], np.inf).min(axis=1, initial=np.inf))
 
     def _idle(self, limit: Array, others: Array) -> bool:
@@ -202,7 +183,8 @@ class Loop:
         samples = np.concatenate(
             [np.unique(np.append(own, known[(known > own[0]) & (known < own[-1])])) for own in corners]
         )  # the end of an edge and the start of the next are two samples at one place
-        size = self.size_at(samples, limits, layers)
+        field = SizeField(loop=self, limits=limits, layers=layers)
+        size = field.at(samples)
         for _ in range(60):
             step = np.diff(samples)
             coarse = step > (1 + SAME) * RESOLUTION * np.minimum(size[:-1], size[1:])
@@ -211,10 +193,77 @@ class Loop:
             middle = (samples[:-1] + samples[1:])[coarse] / 2
             order = np.append(np.arange(len(samples)), np.flatnonzero(coarse) + 0.5).argsort(kind="stable")
             samples = np.append(samples, middle)[order]
-            size = np.append(size, self.size_at(middle, limits, layers))[order]
+            size = np.append(size, field.at(middle))[order]
         between = (np.searchsorted(samples, self.joints[1:-1], side="right") - 1).tolist()
         for first, last in pairwise([0, *between, len(samples)]):
             yield samples[first:last], size[first:last]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SizeField:
+    """The element size along a loop that limits, rows of (l, 3), and layers allow: the least of theirs.
+
+    The size of a limit grows from both of its ends, so that only the nearest of these matter on either side: those from
+    which it grows to the least size.
+    """
+
+    loop: Loop
+    limits: Array
+    layers: Sequence[Layers]
+
+    @cached_property
+    def _ends(self) -> tuple[Array, Array, IntArray]:
+        """Positions (e,) of the ends of limits in their order, their sizes (e,), and the rank of each as they were."""
+        low, high, size = self.limits.T
+        position = np.mod(np.append(low, high), self.loop.length)
+        order = np.argsort(position, kind="stable")
+        rank = np.empty_like(order)
+        rank[order] = np.arange(len(order))
+        return position[order], np.append(size, size)[order], rank
+
+    @cached_property
+    def _nearest(self) -> tuple[Array, Array, IntArray, IntArray]:
+        """Positions and sizes (3 e,) of the ends on three turns; at each the end before and after that matters there.
+
+        Sizes grow with the distance from the former up to the next end, and with that from the latter.
+        """
+        at, size, _ = self._ends
+        turns = np.concatenate([at - self.loop.length, at, at + self.loop.length])
+        size, number = np.tile(size, 3), np.arange(3 * len(at))
+        falling, rising = size - self.loop.growth * turns, size + self.loop.growth * turns
+        before = np.maximum.accumulate(np.where(falling <= np.minimum.accumulate(falling), number, 0))
+        least = np.minimum.accumulate(rising[::-1])[::-1]
+        after = np.minimum.accumulate(np.where(rising <= least, number, number[-1])[::-1])[::-1]
+        return turns, size, before, after
+
+    @cached_property
+    def _covered(self) -> Array:
+        """Least size (e,) of the limits that cover all from one end of limits to the next; infinite without any."""
+        low, high, size = self.limits.T
+        first, last = self._ends[2].reshape(2, -1).tolist()
+        covered, order = np.full(2 * len(low), np.inf), np.argsort(-size, kind="stable")
+        for i in order[(high > low)[order]].tolist():
+            if high[i] - low[i] >= (1 - SAME) * self.loop.length:
+                covered[:] = size[i]
+            elif first[i] <= last[i]:
+                covered[first[i] : last[i]] = size[i]
+            else:
+                covered[first[i] :] = covered[: last[i]] = size[i]
+        return covered
+
+    def at(self, positions: Array) -> Array:
+        """Size (k,) [L] at positions (k,)."""
+        loop, (ends, _, _), (turns, size, before, after) = self.loop, self._ends, self._nearest
+        s = np.mod(positions, loop.length)
+        number = np.searchsorted(ends, s, side="right")
+        one, two = before[number + len(ends) - 1], after[number + len(ends)]
+        grown = np.minimum(size[one] + loop.growth * (s - turns[one]), size[two] + loop.growth * (turns[two] - s))
+        least = np.minimum(grown, self._covered[number - 1])
+        if self.layers:
+            beyond = loop.forwards(positions, np.array([layer.position for layer in self.layers]))
+            beyond = np.where(beyond <= loop.length / 2, beyond, beyond - loop.length)
+            least = np.minimum(least, layer_sizes(self.layers, beyond, loop.growth).min(axis=1))
+        return least
 
 
 def _divided(corners: Array, samples: Array, size: Array) -> Array:

@@ -16,7 +16,6 @@ from bemcontact.analysis.solve import (
 )
 from bemcontact.assessment.accuracy import together
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.multistart import solve_contact
 from bemcontact.formulations.starts import with_start_read
 from bemcontact.options import FormulationName, SolveOptions, SolvingKeywords, Weights
 from bemcontact.problems.problem import Problem
@@ -142,7 +141,7 @@ def solve_cases_with(options: SolveOptions, problem: Problem, progress: Progress
     for name, prepared in prepared_cases(problem, shared).items():
         watch = Stopwatch(progress=progress)
         with watch.stage(name):
-            solution, searches = solve_contact(prepared.contact, options)
+            solution, searches = prepared.solve(options)
             results[name] = assessed(prepared, solution, options.weights, watch, searches)
     return CaseResults(name=problem.name, results=results, seconds=shared.seconds)
 
@@ -153,8 +152,4 @@ def prepared_cases(problem: Problem, watch: Stopwatch) -> dict[str, Prepared]:
     if not problem.load_cases:
         raise ProblemError("the problem states no load cases; bemcontact.solve solves it as it is")
     on_mesh = mesh_of(problem.model_copy(update={"case": None}), watch)
-    prepared = {}
-    for name, accuracy in zip(problem.case_names, on_mesh.accuracies, strict=True):
-        case = on_mesh.condensation.acting(name)
-        prepared[name] = Prepared(contact=case.contact, condensation=case, accuracy=accuracy)
-    return prepared
+    return {name: Prepared.on_mesh(on_mesh, name) for name in problem.case_names}

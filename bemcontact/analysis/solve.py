@@ -229,7 +229,7 @@ def solve_prepared(
 ) -> Result:
     """Solve a problem that is condensed, with options of which the start is read, and assess the result."""
     with watch.stage("solution"):
-        solution, searches = solve_contact(prepared.contact, options, progress)
+        solution, searches = prepared.solve(options, progress)
     return assessed(prepared, solution, options.weights, watch, searches)
 
 
@@ -244,16 +244,33 @@ class Prepared:
     """Accuracy of the mesh."""
     singular: tuple[tuple[Singularity, ...], ...] = ()
     """Infinite pressures that the search for the mesh recognized."""
+    answer: ContactSolution | None = None
+    """Solution of the direct solver, if that was needed for the accuracy."""
 
     @classmethod
-    def on_mesh(cls, found: Meshed) -> Self:
-        """A problem on its mesh, under the only load case or that which acts."""
+    def on_mesh(cls, found: Meshed, case: str | None = None) -> Self:
+        """A problem on its mesh, under the only load case or that which acts, or under one of those that share it."""
+        number = 0 if case is None else found.problem.case_names.index(case)
+        answer = found.answers[number] if found.answers else None
+        if answer is not None:
+            condensation = answer.condensation
+        else:
+            condensation = found.condensation if case is None else found.condensation.acting(case)
         return cls(
-            contact=found.condensation.contact,
-            condensation=found.condensation,
-            accuracy=found.accuracies[0],
+            contact=condensation.contact,
+            condensation=condensation,
+            accuracy=found.accuracies[number],
             singular=found.singular,
+            answer=None if answer is None else answer.solution,
         )
+
+    def solve(
+        self, options: SolveOptions, progress: Callable[[int], object] | None = None
+    ) -> tuple[ContactSolution, RandomStarts | None]:
+        """Solve as of `solve_contact`; the direct solver need not solve once more what it has solved."""
+        if self.answer is not None and options == SolveOptions():
+            return self.answer, None
+        return solve_contact(self.contact, options, progress)
 
 
 def prepare(

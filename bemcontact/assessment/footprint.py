@@ -19,6 +19,8 @@ from bemcontact.contact.solution import ContactSolution
 from bemcontact.serialization import Internal, Leaf, Pair, Record
 
 OPEN_NODES = 3
+EQUAL = 1e-9
+"""Difference from the largest pressure, over that, which is round-off: the peak is at the first point of those."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,7 +32,7 @@ class Peak(Leaf):
     pressure: float
     """Nodal pressure per undeformed length [p]."""
     at: Pair
-    """Contact point (x, y) [L]; one of them where the pressure is the same all along the contact."""
+    """Contact point (x, y) [L]; the first of them where the pressure is the same at several."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -222,8 +224,8 @@ class _LoadOnPoints(NamedTuple):
         """The largest pressure of some points; None if it is round-off."""
         if not len(index):
             return None
-        i = index[self.pressure[index].argmax()]
-        pressure, (x, y) = float(self.pressure[i]), self.contact.points[i].tolist()
+        own, pressure = self.pressure[index], float(self.pressure[index].max())
+        x, y = self.contact.points[index[np.argmax(own >= (1 - EQUAL) * pressure)]].tolist()
         return Peak(pressure=pressure, at=(x, y)) if pressure > LEAST_PEAK * self.contact.scales.pressure else None
 
 

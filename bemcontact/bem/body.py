@@ -1,7 +1,7 @@
 """A problem on its mesh, before it is condensed: loadings, contact points, and the motions that contact holds."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -30,6 +30,8 @@ MANY = 3
 """Motions held at zero up to which each has a note of its own."""
 ROUND_OFF = 1e-14
 """Normal displacement, over that of the motion, of a point that does not see it."""
+OF_ALL_CASES = ("unit_pressures", "shear_moduli", "pinned_motions", "pinned", "seen_motion", "seen_load", "with_bodies")
+"""Properties of a body that do not depend on the load case that acts."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,6 +62,12 @@ class Body:
     unseen: FreeMotions
     bonds: BondedPoints
     apart: FreeMotions
+
+    def under(self, problem: Problem) -> "Body":
+        """The body of a problem that differs in the load case that acts alone; what is found for all cases is kept."""
+        body = replace(self, problem=problem)
+        vars(body).update({name: value for name, value in vars(self).items() if name in OF_ALL_CASES})
+        return body
 
     @cached_property
     def unit_pressures(self) -> tuple[UnitPressures, ...]:

@@ -49,10 +49,13 @@ class CondensedPart:
     like: int
     turn: Array
 
-    def state(self, pressure: Array, factors: Array) -> Array:
-        """Solution of its equations for pressures and bond tractions (n + b,) [p] and factors (1 + c,) of loadings."""
-        own = pressure[self.system.points.number] / self.system.stress
-        return self.response.combined(np.concatenate([factors, own]))
+    def states(self, pressures: Array, factors: Array) -> Array:
+        """Solutions (size, w) of its equations for pressures and bond tractions (w, n + b) [p], and factors (1 + c,).
+
+        The factors are those of loadings, which act beside each of the pressures.
+        """
+        own = pressures[:, self.system.points.number].T / self.system.stress
+        return self.response.combined(np.concatenate([np.tile(factors[:, None], len(pressures)), own]))
 
     def fields(self, z: Array, loading: Loading | None) -> tuple[Array, Array]:
         """Displacement (N, 2) [L] and traction (m, 3, 2) [p] as of `System.fields`, as the body is turned."""
@@ -91,7 +94,7 @@ class Condensation:
             moved = condensed(problem)
             if np.array_equal(moved.contact.points, self.contact.points):  # else they could not be compared
                 return moved
-        body = replace(self.body, problem=problem)
+        body = self.body.under(problem)
         ensure_held(body)
         contact = self.contact.with_factors(problem.factors())
         named = replace(contact, name=problem.title, notes=_notes(body, self.parts))
@@ -308,7 +311,9 @@ def _observe(part: CondensedPart, compliance: Array, free_displacement: Array) -
 def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> BoundaryState:
     """Recover the boundary from pressure (n,) [p] and rigid amplitudes (k,) [L] of a contact solution."""
     mesh = condensation.body.mesh
-    displacement, traction = _boundary(condensation, pressure, rigid_amplitudes, condensation.factors)
+    ((displacement, traction),) = _boundaries(
+        condensation, pressure[None], rigid_amplitudes[None], condensation.factors
+    )
     return BoundaryState(
         points=mesh.nodes[mesh.elements],
         displacement=displacement,
@@ -320,9 +325,11 @@ def boundary_state(condensation: Condensation, pressure: Array, rigid_amplitudes
     )
 
 
-def boundary_change(condensation: Condensation, pressure: Array, rigid_amplitudes: Array) -> tuple[Array, Array]:
-    """Displacement (m, 3, 2) [L] and traction (m, 3, 2) [p] of a pressure (n,) and amplitudes (k,) without loads."""
-    return _boundary(condensation, pressure, rigid_amplitudes, np.zeros_like(condensation.factors))
+def boundary_changes(
+    condensation: Condensation, pressures: Array, rigid_amplitudes: Array
+) -> Iterator[tuple[Array, Array]]:
+    """Displacement (m, 3, 2) [L] and traction (m, 3, 2) [p] of each of pressures (w, n) and amplitudes (w, k) alone."""
+    yield from _boundaries(condensation, pressures, rigid_amplitudes, np.zeros_like(condensation.factors))
 
 
 def boundary_columns(condensation: Condensation) -> tuple[Array, Array]:
@@ -365,31 +372,35 @@ def _pressed(body: Body) -> Iterator[tuple[IntArray, IntArray, IntArray, Array]]
         yield bonds.element, bonds.local, len(points) + bonds.component, bonds.tractions
 
 
-def _boundary(
-    condensation: Condensation, pressure: Array, rigid_amplitudes: Array, factors: Array
-) -> tuple[Array, Array]:
-    """Displacement and traction of a pressure, of amplitudes, and of the loadings by these factors, if any."""
+def _boundaries(
+    condensation: Condensation, pressures: Array, rigid_amplitudes: Array, factors: Array
+) -> Iterator[tuple[Array, Array]]:
+    """Displacement and traction of each of pressures (w, n) and amplitudes (w, k), with loadings by these factors."""
     body, gauge = condensation.body, condensation.gauge
     amplitudes = rigid_amplitudes.copy()
-    amplitudes[: len(gauge.shift_load)] -= gauge.shift_load @ factors + gauge.shift_pressure @ pressure
-    displacement, traction = np.zeros_like(body.mesh.nodes), np.zeros((*body.mesh.elements.shape, 2))
+    amplitudes[:, : len(gauge.shift_load)] -= gauge.shift_load @ factors + pressures @ gauge.shift_pressure.T
+    moved = np.zeros((len(pressures), 0))
     if condensation.bond is not None:
-        held, moved = (part[0] @ pressure + part[1] @ factors for part in condensation.bond)
-        pressure = np.append(pressure, held)
-        displacement += replace(
-            body.seen, coefficients=np.append(moved, np.zeros(3 * len(body.tools.names)))[None]
-        ).displacement(body.mesh)[..., 0]
-    for part in condensation.parts:
-        acting = combined(part.system.loadings, factors.tolist()) if factors.any() else None
-        u, t = part.fields(part.state(pressure, factors), acting)
-        displacement[part.mesh.nodes] += u
-        traction[part.mesh.elements] = t
-    displacement += body.seen.displacement(body.mesh) @ amplitudes
-    for element, local, point, vectors in _pressed(body):
-        at, by_point = 3 * element + local, pressure[point]
-        for axis in (0, 1):
-            traction[..., axis] += np.bincount(at, by_point * vectors[:, axis], 3 * len(traction)).reshape(-1, 3)
-    return displacement[body.mesh.elements], traction
+        held, moved = (pressures @ part[0].T + part[1] @ factors for part in condensation.bond)
+        pressures = np.hstack([pressures, held])
+    states = [part.states(pressures, factors).T for part in condensation.parts]
+    for pressure, amplitude, step, *own in zip(pressures, amplitudes, moved, *states, strict=True):
+        displacement, traction = np.zeros_like(body.mesh.nodes), np.zeros((*body.mesh.elements.shape, 2))
+        if condensation.bond is not None:
+            displacement += replace(
+                body.seen, coefficients=np.append(step, np.zeros(3 * len(body.tools.names)))[None]
+            ).displacement(body.mesh)[..., 0]
+        for part, z in zip(condensation.parts, own, strict=True):
+            acting = combined(part.system.loadings, factors.tolist()) if factors.any() else None
+            u, t = part.fields(z, acting)
+            displacement[part.mesh.nodes] += u
+            traction[part.mesh.elements] = t
+        displacement += body.seen.displacement(body.mesh) @ amplitude
+        for element, local, point, vectors in _pressed(body):
+            at, by_point = 3 * element + local, pressure[point]
+            for axis in (0, 1):
+                traction[..., axis] += np.bincount(at, by_point * vectors[:, axis], 3 * len(traction)).reshape(-1, 3)
+        yield displacement[body.mesh.elements], traction
 
 
 def _force_balance(condensation: Condensation, traction: Array) -> float:

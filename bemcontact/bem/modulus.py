@@ -68,7 +68,7 @@ def _on_springs(
     """
     system, softer = part.system, doubled.system
     points, loading, less = system.points, *(combined(item.loadings, factors.tolist()) for item in (system, softer))
-    _, traction = part.fields(part.state(acting, factors), loading)
+    _, traction = part.fields(part.states(acting[None], factors)[:, 0], loading)
     np.add.at(traction, (points.element, points.local), acting[points.number][points.pressure, None] * points.traction)
     values, particular, others = loading.values, loading.particular, less.particular
     change = Loading(

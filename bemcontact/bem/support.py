@@ -1,7 +1,6 @@
 """Whether contact holds a body against its loads, and in which motions it does not."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
@@ -24,7 +23,7 @@ middle, gaps on a coarse mesh seem to open, by less."""
 def each_case(body: Body) -> Iterator[Body]:
     """The body under each load case and combination where none of them acts yet; else nothing."""
     if body.problem.case is None:
-        yield from (replace(body, problem=body.problem.with_case(name)) for name in body.problem.case_names)
+        yield from (body.under(body.problem.with_case(name)) for name in body.problem.case_names)
 
 
 def ensure_held(body: Body) -> None:

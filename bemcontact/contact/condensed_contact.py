@@ -237,13 +237,8 @@ class CondensedContact(WithHints, MotionAlgebra):
     @property
     def net_load(self) -> float:
         """Largest work of the loads in a free motion, over the sum of their magnitudes; 1 if these are not known."""
-        total = self.pinned.total(*self._acting)
+        total = self.pinned.total(*_acting(self.cases, self.tools))
         return float(abs(self.motion_load).max(initial=0.0)) / total if total > 0 else 1.0
-
-    @property
-    def _acting(self) -> tuple[Array, Array]:
-        """Factors and forces as of `_loads`."""
-        return _loads(self.cases, self.tools)
 
     def with_factors(self, factors: Mapping[str, float]) -> Self:
         """Apply load cases, each by its factor, and no other ones; nothing is condensed anew.
@@ -304,7 +299,7 @@ class CondensedContact(WithHints, MotionAlgebra):
 
     def balanced(self) -> Self:
         """Refuse loads along a motion that nothing resists, with a `ProblemError`."""
-        if violation := self.pinned.violation(*self._acting, self.units):
+        if violation := self.pinned.violation(*_acting(self.cases, self.tools), self.units):
             raise ProblemError(violation)
         return self
 
@@ -324,15 +319,15 @@ class CondensedContact(WithHints, MotionAlgebra):
                     f"{name} needs {tools.position.size} numbers, three for each tool; found {len(terms)}"
                 )
         loads = np.column_stack([cases.motion_load * factors, _terms(tools.amplitudes.T, force)])
-        acting = replace(cases, factors=cases.factors + factors)
         moved = replace(tools, position=_sum(tools.position, position), force=_sum(tools.force, force))
+        stepped = replace(cases, factors=cases.factors + factors)
         return replace(
             self,
-            cases=acting,
+            cases=stepped,
             tools=moved,
             free_displacement=_sum(self.free_displacement, cases.displacement * factors),
             initial_gap=_sum(self.initial_gap, _terms(tools.motions, position)),
-            motion_load=_sum(self.motion_load, loads, self.pinned.total(*_loads(acting, moved))),
+            motion_load=_sum(self.motion_load, loads, self.pinned.total(*_acting(stepped, moved))),
         )
 
     @property
@@ -486,15 +481,6 @@ class CondensedContact(WithHints, MotionAlgebra):
         return archive.read(file_path(path, "the file to read"), cls)
 
 
-def _loads(cases: LoadCases, tools: Tools) -> tuple[Array, Array]:
-    """Factors (1 + c,) of what is permanent and of the cases, and the terms (3 t, 1 + c) of the forces on tools."""
-    factors = np.concatenate([[1.0], cases.factors])
-    if not len(tools):
-        return factors, np.zeros((0, len(factors)))
-    of_cases = cases.force * cases.factors
-    return factors, np.column_stack([_sum(tools.force, -of_cases), of_cases])
-
-
 def _terms(matrix: Array, columns: Array) -> Array:
     """All products (m, i j) whose sums by row are matrix (m, i) @ columns (i, j) @ ones."""
     return (matrix[:, :, None] * columns).reshape(len(matrix), columns.size)
@@ -505,3 +491,12 @@ def _sum(start: Array, terms: Array, least: float = 0.0) -> Array:
     total = start + terms.sum(axis=1)
     size = np.maximum(abs(start) + abs(terms).sum(axis=1), least)
     return np.where(abs(total) > CANCELLED * size, total, 0.0)
+
+
+def _acting(cases: LoadCases, tools: Tools) -> tuple[Array, Array]:
+    """Factors (1 + c,) of what is permanent and of the cases, and the terms (3 t, 1 + c) of the forces on tools."""
+    factors = np.concatenate([[1.0], cases.factors])
+    if not len(tools):
+        return factors, np.zeros((0, len(factors)))
+    of_cases = cases.force * cases.factors
+    return factors, np.column_stack([_sum(tools.force, -of_cases), of_cases])

@@ -104,9 +104,14 @@ def scaled_change(contact: CondensedContact, change: Change) -> Change:
 
 def unscaled(contact: CondensedContact, pressure: Array, amplitudes: Array) -> tuple[Array, Array, Array]:
     """Put the units back: p (n,) [p], u_n = Δ1 + M p + R a (n,) [L] and a (k,) from dimensionless p and a."""
-    U, T = contact.scales
-    p, a = pressure * T, amplitudes * U / motion_sizes(contact)
+    p, a = unscaled_point(contact, pressure, amplitudes)
     return p, contact.free_displacement + contact.compliance @ p + contact.rigid_motions @ a, a
+
+
+def unscaled_point(contact: CondensedContact, pressure: Array, amplitudes: Array) -> tuple[Array, Array]:
+    """Put the units back: p (n,) [p] and a (k,) from dimensionless ones."""
+    U, T = contact.scales
+    return pressure * T, amplitudes * U / motion_sizes(contact)
 
 
 def motion_sizes(contact: CondensedContact) -> Array:

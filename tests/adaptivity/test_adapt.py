@@ -784,6 +784,43 @@ def test_without_a_load_no_element_is_divided_for_round_off(elements: int | None
     assert max(unknowns) < 1000, progress
 
 
+def slit(length: float = 1.0, stress: float = 1.0) -> Problem:
+    """The model `slit_closure` in other units; the pressure on its slit is uniform, on any mesh."""
+    corners = {"ligament": (3, 0), "side": (8, 0), "top": (8, 10), "axis": (0, 10), "slit": (0, 0)}
+    outer = [{"name": name, "start": [length * x, length * y]} for name, (x, y) in corners.items()]
+    closing = {"top": {"traction": {"y": -48.36 * stress}}}
+    surface = {"kind": "deflected_contour", "conditions": closing, "direction": [0, 1]}
+    return problem_of(
+        {
+            "name": "slit", "material": {"young_modulus": 1000 * stress, "poisson_ratio": 0.3},
+            "boundary": {"outer": outer},
+            "conditions": {"axis": {"displacement": {"x": 0}}, "ligament": {"displacement": {"y": 0}},
+                           "top": {"traction": {"y": -75 * stress}}},
+            "contact_zones": {"slit face": {"edges": "slit", "surface": surface}},
+        }
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("length", "stress", "code"),
+    [(1.0, 1.0, False), (25.4, 1.0, False), (1e-3, 0.145, False), pytest.param(1, 1, True, marks=pytest.mark.slow)],
+)
+def test_where_the_pressure_is_uniform_round_off_does_not_decide_on_the_mesh(
+    length: float, stress: float, code: bool, monkeypatch: pytest.MonkeyPatch
+):
+    """Other units and machine code change the last digits, and with them at which point the largest pressure is."""
+    plain = solve(slit())
+    monkeypatch.setattr("bemcontact.bem.system.numba_is_imported", lambda: code)
+    other = solve(slit(length, stress))
+    assert plain.holds
+    assert plain.footprint.peak is not None
+    assert other.footprint.peak is not None
+    assert other.contact.points / length == pytest.approx(plain.contact.points, abs=1e-9)
+    assert other.footprint.peak.pressure / stress == pytest.approx(75 - 48.36, rel=1e-6)
+    assert other.footprint.peak.at == pytest.approx([length * x for x in plain.footprint.peak.at], abs=1e-9 * length)
+    assert plain.footprint.peak.at == pytest.approx(plain.contact.points[0])
+
+
 @pytest.mark.slow
 def test_contact_that_reaches_a_little_around_a_fillet_is_found_at_once():
     """Contact begins a length d behind a flat edge, where the pressure K p / √d of a flat punch is E d / R.
@@ -821,6 +858,21 @@ def test_a_search_that_begins_at_the_ends_of_an_answer_rests_there_at_once():
     again = MeshSearch.fitted_to(stated, last).fitted(4000, meshes.append)
     assert len(meshes) == count + 1
     assert again.degrees_of_freedom == last.degrees_of_freedom
+
+
+def test_a_mesh_is_kept_for_contacts_that_leave_its_ends_of_contact_at_rest():
+    """Then the answer on it is the first one of the search with these contacts; else nothing is changed."""
+    search = MeshSearch.of(half_disk(2000.0).with_value("accuracy", 0.01))
+    last = search.fitted(4000, lambda _: None)
+    before = search.problem
+    (end, count), *others = search.layers
+    search.layers = [(replace(end, position=end.position + end.width / 10), count), *others]
+    assert not search.goes_on_with(last)
+    assert search.problem is before
+    search.layers = [(end, count), *others]
+    assert search.goes_on_with(last)
+    assert search.last is last
+    assert [edge.ends_at for edge in search.mesh().edges] == [edge.ends_at for edge in last.body.problem.edges]
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ from bemcontact.adaptivity.sizes import (
     Layers,
     Limit,
     Loop,
+    layer_sizes,
 )
 from bemcontact.arrays import Array
 from bemcontact.problems.boundary import Boundary
@@ -68,6 +69,19 @@ def test_the_size_respects_every_limit_and_grows_by_no_more_than_the_growth(rows
     for (p, q), (a, b) in zip(pairwise(at), pairwise(size), strict=True):
         away = min(abs(p - q), loop.length - abs(p - q))
         assert abs(a - b) <= GROWTH * away + 1e-12
+
+
+@settings(max_examples=60, deadline=None)
+@given(LIMITS, LIMITS, st.lists(st.floats(0, AROUND), min_size=1, max_size=8))
+def test_the_size_is_the_least_of_all_limits(rows: list, points: list, at: list[float]):
+    """Of each limit it is its size, and the growth times the distance beyond its ends, the shorter way around."""
+    loop, at = rectangle(), np.array(at)
+    limits = np.array([whole(loop, 2.0), *rows, *((low, low, size) for low, _, size in points)])
+    places = np.append(at, limits[:, :2].ravel())
+    forwards = np.mod(places[:, None] - limits[:, 0], loop.length)
+    beyond = np.maximum(np.minimum(loop.length - forwards, forwards - (limits[:, 1] - limits[:, 0])), 0.0)
+    least = (limits[:, 2] + GROWTH * beyond).min(axis=1)
+    assert loop.size_at(places, limits, ()) == pytest.approx(least, rel=1e-9, abs=1e-12)
 
 
 @settings(max_examples=40, deadline=None)
@@ -180,7 +194,7 @@ def test_the_mirror_image_has_the_mirror_image_of_the_ends(at: float, width: flo
 
 def test_layers_have_a_shortest_element():
     layer = Layers(position=1.0, width=2.0, count=100.0, after=True)
-    assert layer.at(np.array([0.0]), GROWTH)[0] == 2.0 * SHORTEST
+    assert layer_sizes([layer], np.array([[0.0]]), GROWTH) == 2.0 * SHORTEST
 
 
 def test_layers_at_the_seam_of_a_loop_reach_to_both_sides():

@@ -489,3 +489,16 @@ def test_qp3_finds_a_contact_that_is_small_beside_its_zone():
     assert result.footprint.peak is not None
     force = result.footprint.resultant.force[1]
     assert result.footprint.peak.pressure == pytest.approx(np.sqrt(force * 70e3 / (np.pi * 8)), rel=0.01)  # Hertz
+
+
+def test_what_the_search_for_a_mesh_solved_is_the_solution_on_it():
+    """It is solved no second time; solved anew on the same mesh, it is the same, from another start."""
+    problem = bemcontact.load("models/cylinder_on_plane.yaml")
+    found = bemcontact.solve(problem)
+    assert found.problem is not None
+    anew = bemcontact.solve(found.problem, accuracy=None)
+    assert anew.contact.points == pytest.approx(found.contact.points, abs=1e-12)
+    assert anew.solution.pressure == pytest.approx(found.solution.pressure, rel=1e-9)
+    assert anew.solution.iterations > found.solution.iterations
+    assert found.certified
+    assert anew.certified
