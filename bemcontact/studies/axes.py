@@ -147,10 +147,10 @@ def _text(name: str, value: object) -> str:
 
 
 def as_floats(value: object) -> object:
-    """A value with whole numbers as other numbers: 20 and 20.0 are the same."""
+    """A value with whole numbers as other numbers: 20 and 20.0 are the same, and so are 0.0 and -0.0."""
     match value:
-        case int() if not isinstance(value, bool):
-            return float(value)
+        case int() | float() if not isinstance(value, bool):
+            return float(value) + 0.0
         case list():
             return [*map(as_floats, value)]
         case dict():

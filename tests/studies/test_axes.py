@@ -123,6 +123,7 @@ def test_axes_of_one_name_have_all_their_keys_in_it():
         ({"a": 3.0}, "a list of values"),
         ({"a": [1, 1.0]}, "occurs twice"),
         ({"a": [[1, 2], [1.0, 2.0]]}, "occurs twice"),
+        ({"a": [0.0, -0.0]}, "occurs twice"),
         ({"a": [float("nan")]}, "can be varied"),
         ({"a": [object()]}, "can be varied"),
         ({"a,a": [1]}, "varied twice"),
