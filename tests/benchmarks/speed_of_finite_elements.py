@@ -8,6 +8,7 @@ import boundary_elements_pressed as boundary_elements
 import finite_elements_pressed as finite_elements
 from finite_elements_pressed import Pressed
 from pressure_error import Pressure, relative_error
+from speed_cylinder import assembled_by, codes
 from speed_page import Section, Settings, Table, Target
 from timing import in_turns
 
@@ -59,7 +60,7 @@ an active set solves. Two ways to recover the pressure are tried (in balance wit
 a spline through their sum), and the better one counts. *Without smoothing* is the first. Set-up, factorization,
 condensation and contact are timed, not the making of the mesh.
 
-Of this program the whole `bemcontact.solve` is timed with its checks, for a problem that is read.
+Of this program the whole `bemcontact.solve` is timed with its checks, for a problem that is read, by {code}.
 
 - *uniform*: elements of one size wherever contact may be;
 - *equal work*: of this program too, set-up, factorization, condensation and contact alone, and no checks. Loads, gaps
@@ -270,15 +271,18 @@ def measure(settings: Settings, say: Callable[[str], None]) -> Section:
     """Compare both programs on both bodies."""
     found: list[Table] = []
     asked: list[Target] = []
-    raw = {}
+    raw, code = {}, codes()[-1]
     for name in BODIES:
         say(f"{name}, reference")
         result = comparison(name, settings.quick)
         say(f"{name}, all meshes")
-        result.points.extend(result.measured(settings.quick))
+        with assembled_by(code):
+            result.points.extend(result.measured(settings.quick))
         found += tables(name, result)
         raw[name] = {"reference": result.unknowns, "checked": result.checked, "end": result.end,
                      "points": [vars(point) for point in result.points]}  # fmt: skip
         if name == "cylinder":
             asked = targets(result.points)
-    return Section(title="Finite elements at an equal error", text=TEXT, tables=found, targets=asked, raw=raw)
+    return Section(
+        title="Finite elements at an equal error", text=TEXT.format(code=code), tables=found, targets=asked, raw=raw
+    )
