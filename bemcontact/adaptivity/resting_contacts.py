@@ -44,6 +44,8 @@ ROUND_OFF = 1e-9
 """Distance of two lines of symmetry over the size of the bodies, up to which they are one; motion that is none."""
 Curved = LineSurface | BodySurface
 """A rigid surface that may be curved."""
+OF_SEMI_ELLIPSE = 4.0
+"""Length of a semi-elliptic pressure over the root mean square of the distances from its middle."""
 MOST_STEPS = 12
 """Steps in which the pairs have to come to rest."""
 SLOWEST = 0.5
@@ -138,9 +140,9 @@ def has_cases(problem: Problem) -> bool:
 def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:
     """For each contact of two elastic bodies, where the second one is beside the first, and what that may change.
 
-    A peak is off as of `PairMotion.change_of_peak`. As one side slides along the other, common normals turn by the
-    larger curvature at most, and gaps are off by half of the turn times the slide: a peak is off by these as of
-    `_ways_of_rigid`.
+    A peak is off as of `PairMotion.change_of_peak`, ends of contact as of `change_of_ends`. As one side slides along
+    the other, common normals turn by the larger curvature at most, and gaps are off by half of the turn times the
+    slide: a peak is off by these as of `_ways_of_rigid`.
     """
     contact = case.condensation.contact
     moved = motions_of_pairs(body, contact, case.solution.pressure, case.displacement)
@@ -152,7 +154,7 @@ def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Way, flo
         x, y = (surface.approach.step + step).tolist()
         turn = abs(float(motion.turns @ step))
         off = turn * float(np.hypot(*step)) / contact.scales.displacement / 2
-        yield name, Way(x, y), max(turn / 2, off / 2, motion.change_of_peak(step))
+        yield name, Way(x, y), max(turn / 2, off / 2, motion.change_of_peak(step), motion.change_of_ends(step))
 
 
 def _ways_of_rigid(case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:
@@ -247,12 +249,14 @@ class PairMotion(NamedTuple):
     spread : (2,) root mean square of its differences from the mean [L]
     bends : (2, 2) vectors [1/L] along and across the normal at the peak, as long as the curvature that counts
     turns : (2,) vector [1/L] across the normal at the peak, as long as the turn of common normals by a slide may be
+    slides : (2,) vector [1/L] across the normal at the peak, one over the length of contact, unless both sides are flat
     """
 
     mean: Array
     spread: Array
     bends: Array
     turns: Array
+    slides: Array
 
     def change_of_peak(self, step: Array) -> float:
         """Part by which a peak is off if pairs are off by a motion (2,) [L].
@@ -261,6 +265,14 @@ class PairMotion(NamedTuple):
         of this: measured with pins that are drawn beside where they come to lie.
         """
         return float(np.hypot(*(self.bends @ step))) / 2
+
+    def change_of_ends(self, step: Array) -> float:
+        """Part of the length of contact by which its ends are off, at most, if pairs are off by a motion (2,) [L].
+
+        What slides takes a curved boundary along, and contact stays where both sides are nearest: as drawn, it goes
+        along with a part of the slide, which depends on both curvatures.
+        """
+        return abs(float(self.slides @ step))
 
 
 def motions_of_pairs(
@@ -282,16 +294,18 @@ def motions_of_pairs(
             mean = (signed @ motion).sum(axis=0) / force
             squares = (np.sign(signed)[..., None] * motion - mean) ** 2
             spread = np.sqrt(np.einsum("kn,knd->d", abs(signed), squares) / force)
-            peak = contact.points[int(abs(signed).sum(axis=0).argmax())]
+            share = abs(signed).sum(axis=0) / force
+            peak, away = int(share.argmax()), contact.points - share @ contact.points
+            length = max(OF_SEMI_ELLIPSE * float(np.sqrt(share @ away**2).max()), float(contact.weights[peak]))
             found |= {
-                name: PairMotion(each * mean, spread, *_bends(touching[name], peak[None]))
+                name: PairMotion(each * mean, spread, *_bends(touching[name], contact.points[peak, None], length))
                 for name, each in signs.items()
             }
     return found
 
 
-def _bends(surface: BodySurface, point: Array) -> tuple[Array, Array]:
-    """Vectors (2, 2) and (2,) [1/L] at a point (1, 2), as of `PairMotion`.
+def _bends(surface: BodySurface, point: Array, length: float) -> tuple[Array, Array, Array]:
+    """Vectors (2, 2), (2,) and (2,) [1/L] at a point (1, 2) of contact of a length [L], as of `PairMotion`.
 
     Along the normal the curvatures of both sides count in proportion to their part in common normals. Across it the
     smaller one counts: what slides along a flat side keeps its distances.
@@ -302,4 +316,4 @@ def _bends(surface: BodySurface, point: Array) -> tuple[Array, Array]:
     x, y = pair.normals[0]
     both = surface.share * own + (1 - surface.share) * its
     along, across = np.array([x, y]), np.array([-y, x])
-    return np.array([both * along, min(own, its) * across]), max(own, its) * across
+    return np.array([both * along, min(own, its) * across]), max(own, its) * across, bool(own + its) / length * across

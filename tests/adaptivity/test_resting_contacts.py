@@ -1,15 +1,19 @@
 """Bodies that are drawn elsewhere than where they come to touch have the answer of those that are drawn there."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from known_answers import pin_in_hole
 from several_bodies import HELD, block, circle, elastic, problem
 
 import bemcontact
+from bemcontact.adaptivity import resting_contacts
 from bemcontact.adaptivity.resting_contacts import RESTING
 from bemcontact.problems import Material
 from bemcontact.reference.pin_in_hole import LoosePin
 
+MODELS = Path(__file__).parents[2] / "models"
 CLEARANCE = 0.02
 LOAD = 20 * 0.138339  # half angle 30 degrees, which depends on load over clearance
 
@@ -397,3 +401,21 @@ def test_a_roller_may_be_drawn_beside_its_seat(place: tuple[float, float]):
     sizes = np.linalg.solve(np.column_stack([*normals.values()]), [0, weight])
     for (name, normal), size in zip(normals.items(), sizes, strict=True):
         assert result.forces[name] == pytest.approx(size * normal, abs=0.003 * weight)
+
+
+@pytest.mark.slow
+def test_ends_of_contact_do_not_go_along_with_a_slide(monkeypatch: pytest.MonkeyPatch):
+    """A round nose slides over a flat beam by 2 % of the length of contact, and the contact stays below the nose.
+
+    Ends of contact differ by their bars from those of pairs that rest to a thousandth of their length.
+    """
+    cantilevers = bemcontact.load(MODELS / "bodies" / "two_cantilevers.yaml")
+    found = bemcontact.solve(cantilevers)
+    monkeypatch.setattr(resting_contacts, "RESTING", 1e-3)
+    at_rest = bemcontact.solve(cantilevers, accuracy=0.003)
+    assert not any("elsewhere by" in note for note in found.notes)
+    own, its = ({bar.quantity: bar for bar in it.accuracy.bars} for it in (found, at_rest))
+    length = its["length"].value
+    for end in ("start", "end"):
+        allowed = own[end].bar + its[end].bar
+        assert own[end].value == pytest.approx(its[end].value, rel=0, abs=allowed * length)
