@@ -8,7 +8,6 @@ import numpy as np
 import scipy
 
 from bemcontact.arrays import Array, BoolArray, least_squares, nonnegative_residual, real_array, short_svd
-from bemcontact.contact.lu import getrf, getrs
 from bemcontact.errors import ProblemError, SingularSystemError
 
 INTERFERENCE = 1e-6
@@ -165,16 +164,13 @@ class MotionAlgebra:
     @cached_property
     def _inverse(self) -> Array:
         """(ℓᵀR)⁻¹ (k, k); `SingularSystemError` if the motions are singular to working precision."""
-        square = self.equilibrium.T @ self.rigid_motions
-        if not square.size:
-            return square
-        factors, pivots, singular = getrf(square)
-        if singular:
+        try:
+            return np.asarray(np.linalg.inv(self.equilibrium.T @ self.rigid_motions), float)
+        except np.linalg.LinAlgError:
             raise SingularSystemError(
                 "the free motions are not independent of each other to working precision; give rigid_motions columns "
                 "of similar size that differ"
-            )
-        return getrs(factors, pivots, np.eye(len(square)))[0]
+            ) from None
 
     @cached_property
     def balancing_pressure(self) -> Array:
