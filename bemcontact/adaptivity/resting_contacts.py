@@ -269,8 +269,8 @@ class PairMotion(NamedTuple):
     def change_of_ends(self, step: Array) -> float:
         """Part of the length of contact by which its ends are off, at most, if pairs are off by a motion (2,) [L].
 
-        What slides takes a curved boundary along, and contact stays where both sides are nearest: as drawn, it goes
-        along with a part of the slide, which depends on both curvatures.
+        Contact stays where both sides are nearest. With pairs as drawn it moves with a curved side by a part of the
+        slide, which depends on both curvatures.
         """
         return abs(float(self.slides @ step))
 
