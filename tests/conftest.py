@@ -42,7 +42,7 @@ def pytest_collection():
 def numpy_by_default():
     """Results do not depend on whether a test before has imported numba."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("bemcontact.bem.system.numba_is_imported", lambda: False)
+        patch.setattr("bemcontact.compilation.numba_is_imported", lambda: False)
         yield
 
 

@@ -9,15 +9,15 @@ computes several points at once where indices are unsigned: a signed one might c
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-import numba
 import numpy as np
 
 from bemcontact.arrays import Array, ComplexArray, IntArray
 from bemcontact.bem.flat import FlatColumns, FlatElements, FlatPoints, FlatRules
 from bemcontact.bem.kernels import Factors
+from bemcontact.compilation import compiled
 from bemcontact.threads import share_out, workers
 
 STRIDE = 264
@@ -54,17 +54,7 @@ PARTS = 31
 UNSIGNED_LANES = np.uint64(LANES)
 
 
-def _machine_code(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile at the first call; the machine code is kept for later processes if there is a directory for it."""
-    # Neither option changes a result by more than round-off: no check for division by zero, fused multiply-add.
-    options = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
-    try:
-        return numba.njit(function, cache=True, **options)
-    except RuntimeError:  # there is no directory to keep the machine code in
-        return numba.njit(function, **options)
-
-
-@_machine_code
+@compiled(inner=True)
 def _tier(rho: float, limits: Array) -> int:
     """As `reference_element.tier`."""
     tier = len(limits)
@@ -73,21 +63,21 @@ def _tier(rho: float, limits: Array) -> int:
     return tier
 
 
-@_machine_code
+@compiled(inner=True)
 def _bernstein(root: complex) -> float:
     """As `reference_element.bernstein_parameter`; a sum of the distances from both foci needs no complex root."""
     half = (abs(root - 1) + abs(root + 1)) / 2
     return half + math.sqrt(max(half * half - 1, 0.0))
 
 
-@_machine_code
+@compiled(inner=True)
 def _at_nodes(points: FlatPoints, j: int, elements: FlatElements, e: int) -> tuple[complex, complex, complex]:
     """τ = ζ - z of a point at the three nodes; the difference to the base keeps the digits of short elements."""
     base, offset = points.base[j], points.offset[j]
     return (elements.z[e, 0] - base) - offset, (elements.z[e, 1] - base) - offset, (elements.z[e, 2] - base) - offset
 
 
-@_machine_code
+@compiled(inner=True)
 def _nearest_root(t0: complex, t1: complex, t2: complex, c1: complex, c2: complex) -> tuple[float, complex]:
     """As `kernels.nearest_root`: local coordinate of the nearest node, and the step from there to the root."""
     q0, q1, q2 = abs(t0), abs(t1), abs(t2)
@@ -103,7 +93,7 @@ def _nearest_root(t0: complex, t1: complex, t2: complex, c1: complex, c2: comple
     return start, -2 * at / (slope + root)
 
 
-@_machine_code
+@compiled(inner=True)
 def _regular(
     w: Array, bits: IntArray, first: int, last: int, n: int, xi: Array, shapes: Array,
     c1: complex, c2: complex, with_U: bool,
@@ -167,7 +157,7 @@ def _regular(
                     w[M_IM[2] + i] += n2 * sin
 
 
-@_machine_code
+@compiled(inner=True)
 def _split_off(
     w: Array, i: int, c1: complex, c2: complex, r: complex, minus: complex, plus: complex, on: bool,
     log_ratio: complex, turn0: complex, turn2: complex, rules: FlatRules,
@@ -221,7 +211,7 @@ def _split_off(
     w[M_IM[0] + j], w[M_IM[1] + j], w[M_IM[2] + j] = m0.imag, m1.imag, m2.imag
 
 
-@_machine_code
+@compiled(inner=True)
 def _near_singular(
     w: Array, i: int, points: FlatPoints, j: int, elements: FlatElements, e: int, rules: FlatRules
 ) -> None:
@@ -234,7 +224,7 @@ def _near_singular(
     _split_off(w, i, c1, c2, start + step, minus, plus, False, ratio, turn0, turn2, rules)
 
 
-@_machine_code
+@compiled(inner=True)
 def _singular(w: Array, i: int, x: float, c1: complex, c2: complex, rules: FlatRules) -> None:
     """As `kernels.on_element`, integrated, for a point at the local coordinate x of the element."""
     if abs(x) == 1:
@@ -252,7 +242,7 @@ def _singular(w: Array, i: int, x: float, c1: complex, c2: complex, rules: FlatR
     _split_off(w, i, c1, c2, r, r - 1, r + 1, True, ratio, turn0, turn2, rules)
 
 
-@_machine_code
+@compiled(inner=True)
 def _disc(points: FlatPoints, first: int, last: int) -> tuple[complex, float]:
     """As `skeleton.disc`, of points from the first to before the last."""
     middle = (points.base[first] + points.base[last - 1]) / 2
@@ -262,7 +252,7 @@ def _disc(points: FlatPoints, first: int, last: int) -> tuple[complex, float]:
     return middle, radius
 
 
-@_machine_code
+@compiled(inner=True)
 def _least_rho(c0: complex, c1: complex, c2: complex, middle: complex, radius: float) -> float:
     """A lower bound of ρ for all points of a disc, as in `Influence`."""
     a1, a2, distance = abs(c1), abs(c2), max(abs(c0 - middle) - radius, 0.0)
@@ -270,7 +260,7 @@ def _least_rho(c0: complex, c1: complex, c2: complex, middle: complex, radius: f
     return r + math.sqrt(r * r - 1) if r > 1 else 1.0
 
 
-@_machine_code
+@compiled(inner=True)
 def _integrate(
     w: Array, bits: IntArray, tiers: IntArray, first: int, R: int, middle: ComplexArray, radius: Array,
     points: FlatPoints, elements: FlatElements, e: int, with_U: bool, rules: FlatRules,
@@ -322,13 +312,13 @@ def _integrate(
                         _singular(w, i, points.on_local[on], c1, c2, rules)
 
 
-@_machine_code
+@compiled(inner=True)
 def _first_of(rows: IntArray) -> int:
     """The first of rows that follow each other, -1 if they do not or one is missing."""
     return rows[0] if rows.min() >= 0 and rows[-1] - rows[0] == len(rows) - 1 else -1
 
 
-@_machine_code
+@compiled(inner=True)
 def _add(
     target: Array, w: Array, a: int, factor_a: float, b: int, factor_b: float, c: int, factor_c: float, constant: float
 ) -> None:
@@ -337,7 +327,7 @@ def _add(
         target[i] += factor_a * w[a + i] + factor_b * w[b + i] + factor_c * w[c + i] + constant
 
 
-@_machine_code
+@compiled(inner=True)
 def _add_to_rows(
     line: Array, rows: IntArray, first: int, w: Array,
     a: int, factor_a: float, b: int, factor_b: float, c: int, factor_c: float, constant: float,
@@ -351,7 +341,7 @@ def _add_to_rows(
             line[rows[i]] += factor_a * w[a + i] + factor_b * w[b + i] + factor_c * w[c + i] + constant
 
 
-@_machine_code
+@compiled(inner=True)
 def _add_node(
     out: Array, sums: Array, rows_x: IntArray, rows_y: IntArray, first_x: int, first_y: int, w: Array, k: int,
     node: int, columns: FlatColumns, factor: Factors,
@@ -376,7 +366,7 @@ def _add_node(
                 _add(sums[s, 1], w, y, u * fy, cy, u * gy, cy, 0.0, 0.0)
 
 
-@_machine_code
+@compiled(inner=True)
 def _add_tractions(
     out: Array, sums: Array, rows_x: IntArray, rows_y: IntArray, first_x: int, first_y: int, w: Array, e: int, k: int,
     columns: FlatColumns, factor: Factors, share: float,
@@ -394,7 +384,7 @@ def _add_tractions(
             _add(sums[s, 1], w, log, -factor.log * y, cos, -t * y, sin, t * x, t * share * y)
 
 
-@_machine_code
+@compiled(inner=True)
 def _flush(out: Array, sums: Array, rows_x: IntArray, rows_y: IntArray, first: int) -> None:
     """Add sums of some elements to the right sides, and begin anew: shorter sums have smaller rounding errors."""
     for s in range(len(sums)):
@@ -406,7 +396,7 @@ def _flush(out: Array, sums: Array, rows_x: IntArray, rows_y: IntArray, first: i
     sums[:] = 0
 
 
-@_machine_code
+@compiled()
 def add_rows(
     out: Array, starts: IntArray, step: int,
     points: FlatPoints, elements: FlatElements, columns: FlatColumns, rules: FlatRules, factor: Factors,

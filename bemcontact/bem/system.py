@@ -7,7 +7,6 @@ The normal displacement is computed from it, u_n = n·u, the inverse of (8), so 
 In this module lengths are divided by L0 and stresses by the shear modulus (see `influence`).
 """
 
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
@@ -16,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bemcontact import compilation
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray, indices
 from bemcontact.bem import kernels, reference_element
 from bemcontact.bem.boundary_values import BoundaryValues
@@ -38,12 +38,6 @@ STRAIGHT = 1e-8
 
 MachineCode = Callable[[Array, FlatPoints, FlatElements, FlatColumns, FlatRules, kernels.Factors], None]
 """A function with the parameters of `compiled.add_all`."""
-
-
-@lru_cache(maxsize=1)
-def numba_is_imported() -> bool:
-    """Whether numba was imported before the first body of this process: no body changes the digits of the next."""
-    return "numba" in sys.modules
 
 
 @lru_cache(maxsize=1)
@@ -233,7 +227,7 @@ class System:
         """The compiled function that assembles the system, if there is one and it is wanted."""
         wanted = self.by_numba
         if wanted is None:
-            wanted = numba_is_imported() or self.mesh.degrees_of_freedom >= WORTH_COMPILING
+            wanted = compilation.numba_is_imported() or self.mesh.degrees_of_freedom >= WORTH_COMPILING
         return machine_code() if wanted else None
 
     @property

@@ -810,7 +810,7 @@ def test_where_the_pressure_is_uniform_round_off_does_not_decide_on_the_mesh(
 ):
     """Other units and machine code change the last digits, and with them at which point the largest pressure is."""
     plain = solve(slit())
-    monkeypatch.setattr("bemcontact.bem.system.numba_is_imported", lambda: code)
+    monkeypatch.setattr("bemcontact.compilation.numba_is_imported", lambda: code)
     other = solve(slit(length, stress))
     assert plain.holds
     assert plain.footprint.peak is not None

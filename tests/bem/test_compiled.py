@@ -14,7 +14,7 @@ import pytest
 from bodies import MESHES, arc, even, mesh_of, rectangle, segment, solved, system_of, values_of, without_rigid_motion
 
 import bemcontact
-from bemcontact import threads
+from bemcontact import compilation, threads
 from bemcontact.bem import system as system_module
 from bemcontact.bem.condense import condense
 from bemcontact.bem.discretization import body_of
@@ -193,7 +193,7 @@ def test_machine_code_is_used_where_it_pays(monkeypatch):
     assert large.machine_code is not None
     assert large.notes == (BY_NUMBA,)
     assert dataclasses.replace(large, by_numba=False).machine_code is None
-    monkeypatch.setattr(system_module, "numba_is_imported", lambda: True)
+    monkeypatch.setattr(compilation, "numba_is_imported", lambda: True)
     assert dataclasses.replace(small).machine_code is not None
 
 
@@ -203,9 +203,10 @@ def test_a_large_body_changes_no_digit_of_the_next(first):
     """Numba is used for the small one if it was imported before both, and not because the large one needed it."""
     code = f"""
 {first}
-from bemcontact.bem import system
-assert system.numba_is_imported() or system.machine_code()
-print(system.numba_is_imported())
+from bemcontact.bem.system import machine_code
+from bemcontact.compilation import numba_is_imported
+assert numba_is_imported() or machine_code()
+print(numba_is_imported())
 """
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=100)
     assert out.stdout.strip() == str(first != "pass")
@@ -215,7 +216,7 @@ print(system.numba_is_imported())
 def test_result_notes_that_machine_code_was_used(monkeypatch):
     problem = bemcontact.load(MODELS / "cylinder_on_plane.yaml", variant="stated mesh")
     assert BY_NUMBA not in condense(body_of(problem)).contact.notes
-    monkeypatch.setattr(system_module, "numba_is_imported", lambda: True)
+    monkeypatch.setattr(compilation, "numba_is_imported", lambda: True)
     assert condense(body_of(problem)).contact.notes[-1] == BY_NUMBA
 
 
@@ -238,7 +239,7 @@ def test_machine_code_that_cannot_be_cached_is_compiled_again(monkeypatch):
 
     assert machine_code() is not None
     monkeypatch.setattr(sys.modules["numba"], "njit", njit)
-    assert sys.modules["bemcontact.bem.compiled"]._machine_code(displacement) is displacement
+    assert compilation.compiled()(displacement) is displacement
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ from pathlib import Path
 from unittest.mock import patch
 
 import bemcontact
+from bemcontact import compilation
 from bemcontact.bem import system
 
 MODEL = Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml"
@@ -29,6 +30,6 @@ def assembled_by(code: str) -> Iterator[None]:
     compiled = system.machine_code() if code == "numba" else None
     with (
         patch.object(system, "machine_code", lambda: compiled),
-        patch.object(system, "numba_is_imported", lambda: compiled is not None),
+        patch.object(compilation, "numba_is_imported", lambda: compiled is not None),
     ):
         yield
