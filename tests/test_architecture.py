@@ -12,13 +12,16 @@ PACKAGE = TESTS.parent / "bemcontact"
 
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
-FOUNDATION = ("errors", "checks", "arrays", "threads", "serialization", "options", "version", "files", "views")
+FOUNDATION = (
+    "errors", "checks", "arrays", "threads", "compilation", "serialization", "options", "version", "files", "views",
+)  # fmt: skip
 
 ROOMS = {
     "errors": (),
     "checks": ("errors",),
     "arrays": ("errors", "checks"),
     "threads": (),
+    "compilation": (),
     "serialization": ("errors", "checks"),
     "options": ("errors", "checks"),
     "version": (),
@@ -28,7 +31,7 @@ ROOMS = {
     "spec": ("errors", "checks", "arrays", "files", "problems"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problems", "contact"),
-    "formulations.local_solver": ("errors", "checks", "arrays", "threads"),
+    "formulations.local_solver": ("errors", "checks", "arrays", "threads", "compilation"),
     "formulations": (*FOUNDATION, "contact", "formulations.local_solver"),
     "assessment": (*FOUNDATION, "contact"),
     "adaptivity": (*FOUNDATION, "problems", "contact", "bem", "formulations", "assessment"),
@@ -68,7 +71,7 @@ HOME = {
     "clarabel": ("bemcontact.formulations.clarabel",),
     "matplotlib": ("bemcontact.report.figures",),
     "typer": ("bemcontact.cli",),
-    "numba": ("bemcontact.bem.compiled",),
+    "numba": ("bemcontact.compilation",),
     "meshio": ("bemcontact.report.vtk",),
     "jinja2": ("bemcontact.report.page",),
     "rich": (

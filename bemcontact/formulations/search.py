@@ -33,6 +33,10 @@ NO_CONTACT_STATE = (
     "equations and bounds contradict each other: no pressure p >= 0 leaves a gap >= 0 at all contact points, so that "
     "no contact state exists, whatever the formulation"
 )
+BY_NUMBA = (
+    "the local solver's iterations were taken by machine code (numba): without it, the last digits may differ, and "
+    "another local minimum may be found"
+)
 SOLVER = "inertia-controlling active set"
 QUANTITIES = {1: "infeasibility", 2: "objective"}
 """What each phase of the solver reduces."""
@@ -149,6 +153,8 @@ def _solution(contact: CondensedContact, formulation: str, result: QPResult, sea
         notes.append(f"the objective falls without end along a ray: {ray_in_words(contact, result.ray)}")
     if result.status is QPStatus.INFEASIBLE:
         notes.append(escape_note(contact) or NO_CONTACT_STATE)
+    if result.by_numba:
+        notes.append(BY_NUMBA)
     u_n, p = result.x[:n] * U, result.x[n : 2 * n] * T
     return ContactSolution(
         formulation=formulation,

@@ -12,6 +12,7 @@ import statistics
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,7 @@ from scipy.linalg import qr
 from timing import best_of
 
 from bemcontact.formulations.local_solver.minimize import minimize_qp
-from bemcontact.formulations.local_solver.result import QPResult, QPStatus
+from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
 
 RIGHT = 1e-6
 """Largest error of u_n and of p, each over its own largest entry, of a contact solution that is right."""
@@ -76,17 +77,19 @@ class Trial:
         return self.answer.claim is Claim.OPTIMAL and bool(self.instance.truth) and not self.judgement.error <= WRONG
 
 
-def solve_locally(instance: Instance) -> QPResult:
+def solve_locally(instance: Instance, *, by_numba: bool = False) -> QPResult:
     """Call ours with its defaults from the null vector."""
-    return minimize_qp(instance.H, instance.c, instance.A, instance.cl, instance.cu, instance.bl, instance.bu)
+    options, bounds = QPOptions(by_numba=by_numba), (instance.cl, instance.cu, instance.bl, instance.bu)
+    return minimize_qp(instance.H, instance.c, instance.A, *bounds, options=options)
 
 
-def ours(instance: Instance) -> Answer:
-    result = solve_locally(instance)
+def ours(instance: Instance, *, by_numba: bool = False) -> Answer:
+    result = solve_locally(instance, by_numba=by_numba)
     return Answer(x=result.x, claim=CLAIMS.get(result.status, Claim.NOTHING), says=result.status.value)
 
 
 OURS = Peer(name="bemcontact", package="bemcontact", solve=ours)
+COMPILED = Peer(name="bemcontact (numba)", package="numba", solve=partial(ours, by_numba=True))
 
 
 def trials(peer: Peer, instances: list[Instance], limit: float) -> list[Trial]:
@@ -142,7 +145,7 @@ def comparison(peers: list[Peer], instances: list[Instance], limit: float) -> tu
     for heading in ("solver", *COLUMNS, "median ms", "our time / its"):
         table.add_column(heading, justify="left" if heading == "solver" else "right")
     all_done: list[list[Trial]] = []
-    for peer in (OURS, *peers):
+    for peer in (OURS, COMPILED, *peers):
         if not peer.installed:
             table.add_row(peer.name, "absent")
             continue
@@ -215,7 +218,7 @@ def main() -> None:
     table, all_done = comparison(peers, instances, given.limit)
     console.print(table)
     if given.details:
-        for name, done in zip((OURS, *(peer for peer in peers if peer.installed)), all_done, strict=True):
+        for name, done in zip((peer for peer in (OURS, COMPILED, *peers) if peer.installed), all_done, strict=True):
             console.print(f"[bold]{name.name}[/bold]", *shortfalls(done), sep="\n")
     console.print(growth(given.sizes))
 

@@ -3,9 +3,10 @@
 import statistics
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import product
 
 from judgement import judge
-from local_solver import COLUMNS, OURS, Trial, count
+from local_solver import COLUMNS, COMPILED, OURS, Trial, count
 from peers import PEERS, Peer, run
 from qp_instance import Instance, contact_instances, half_plane, qp1, read_folder, status_instances
 from speed_page import Section, Settings, Table, Target
@@ -27,7 +28,8 @@ QP1 and QP2 of random half-planes, raw and scaled, programs that have no minimiz
 Each solver starts from zero, in a process of its own, and runs up to five times. The time is the median CPU time of a
 whole call. Each program is given to all solvers before the next one. Each result is judged from its point alone, as
 on the page [Solvers](solvers.md). *our time / its* is the geometric mean over the programs that both solved to a
-point that fulfills the first-order conditions. Peers that are not installed: {absent}.
+point that fulfills the first-order conditions. *numba* takes the iterations of programs of up to 250 variables by
+machine code, which is loaded already. Peers that are not installed: {absent}.
 
 A process that is forked pays for memory that it shares: each page is copied when it is first written to, and a program
 in Python writes to more of them. *In one process* both run in turns, on the same programs, and each time is the least
@@ -55,13 +57,13 @@ def ratio(ours: Sequence[Trial], its: Sequence[Trial]) -> float | None:
     return geometric_mean(a.answer.seconds / b.answer.seconds for a, b in pairs if a.first_order and b.first_order)
 
 
-def in_one_process(ours: Sequence[Trial], peer: Peer, its: Sequence[Trial]) -> float | None:
+def in_one_process(ours: Peer, trials: Sequence[Trial], peer: Peer, its: Sequence[Trial]) -> float | None:
     """The same ratio where both run in turns in this process, and each time is the least of several."""
     ratios = []
-    for a, b in zip(ours, its, strict=True):
+    for a, b in zip(trials, its, strict=True):
         if a.first_order and b.first_order:
-            times = in_turns({it.name: partial(it.solve, a.instance) for it in (OURS, peer)})
-            ratios.append(times[OURS.name].cpu / times[peer.name].cpu)
+            times = in_turns({it.name: partial(it.solve, a.instance) for it in (ours, peer)})
+            ratios.append(times[ours.name].cpu / times[peer.name].cpu)
     return geometric_mean(ratios)
 
 
@@ -100,25 +102,29 @@ def measure(settings: Settings, say: Callable[[str], None]) -> Section:
     folder = settings.instances
     instances = [*(read_folder(folder) if folder else ()), *status_instances()]
     instances += contact_instances(list(NODES[:1] if settings.quick else NODES), SEEDS)
-    peers = [OURS, *(peer for peer in PEERS if peer.installed)]
+    peers = [peer for peer in (OURS, COMPILED, *PEERS) if peer.installed]
+    own = [peer for peer in peers if peer in (OURS, COMPILED)]
+    for peer, instance in product(own, status_instances()):  # compiles
+        peer.solve(instance)
     absent = [peer.name for peer in PEERS if not peer.installed]
     done = tried(peers, instances, LIMIT, say)
     second, ratios = large(
         [peer for peer in peers if peer.name in (OURS.name, PEER)], LARGE[: 1 if settings.quick else None], say
     )
-    means = {peer.name: ratio(done[0], trials) for peer, trials in zip(peers, done, strict=True)}
     say("the same in one process")
-    close = {
-        peer.name: in_one_process(done[0], peer, trials)
-        for peer, trials in zip(peers, done, strict=True)
-        if peer.name == PEER
-    }
-    targets = [
-        Target(name=f"local solver over {PEER}, geometric mean{how}", asked=MEAN, measured=its.get(PEER))
-        for how, its in {"": means, ", in one process": close}.items()
-    ]
+    its = next((trials for peer, trials in zip(peers, done, strict=True) if peer.name == PEER), None)
+    targets = []
+    for ours, trials in zip(own, done, strict=False):
+        means = {"": None, ", in one process": None}
+        if its is not None:
+            theirs = next(peer for peer in peers if peer.name == PEER)
+            means = {"": ratio(trials, its), ", in one process": in_one_process(ours, trials, theirs, its)}
+        targets += [
+            Target(name=f"{ours.name} over {PEER}, geometric mean{how}", asked=MEAN, measured=measured)
+            for how, measured in means.items()
+        ]
     targets += [
-        Target(name=f"local solver over {PEER}, QP1 with {n} contact points", asked=asked, measured=ratios.get(n))
+        Target(name=f"{OURS.name} over {PEER}, QP1 with {n} contact points", asked=asked, measured=ratios.get(n))
         for n, asked in LARGEST.items()
         if n in ratios
     ]

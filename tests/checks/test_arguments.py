@@ -134,7 +134,7 @@ CALLS: dict[str, Call] = {
         lambda **options: bemcontact.minimize_qp(np.eye(2), [1, 1], options=QPOptions(**options)),
         {
             "max_iterations": 5, "feasibility_tolerance": 1e-9, "optimality_tolerance": 1e-9, "scale": True,
-            "search": 10, "log": None,
+            "search": 10, "by_numba": None, "log": None,
         },
     ),
     "SolveOptions": (

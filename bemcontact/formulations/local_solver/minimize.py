@@ -1,12 +1,16 @@
 """`minimize_qp`: scale the data, run both phases until a claim passes its check, and return to the given units."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
+from importlib import import_module
 from math import isfinite
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from bemcontact import compilation
 from bemcontact.arrays import Array, BoolArray, whole_array
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.equilibration import Scales, equilibrate, unequilibrated
@@ -14,7 +18,7 @@ from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 from bemcontact.formulations.local_solver.infeasibility import proof_of_infeasibility
 from bemcontact.formulations.local_solver.optimality import FirstOrder, cleaned_ray, examine, first_order
 from bemcontact.formulations.local_solver.phase_one import is_violated, reach_feasibility
-from bemcontact.formulations.local_solver.phase_two import Descent, Ending
+from bemcontact.formulations.local_solver.phase_two import WORTH_EDGES, Descent, Ending
 from bemcontact.formulations.local_solver.progress import FINER, PARALLEL, SearchState
 from bemcontact.formulations.local_solver.ratio_test import nearest
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
@@ -29,6 +33,8 @@ from bemcontact.formulations.local_solver.statement import (
 from bemcontact.formulations.local_solver.working_set import WorkingSet, supporting
 from bemcontact.threads import one_thread
 
+Iterations = Callable[[SearchState, Sides], Sides]
+"""A function with the parameters of `tableau.regular_iterations`."""
 DEFAULTS = QPOptions()
 RENEWALS = 3
 """Largest number of restarts from a stationary point that is doubtful, or which the run has reached from far away."""
@@ -67,14 +73,19 @@ class Restart:
     failed: bool
 
 
-def run_phases(progress: SearchState, sides: Sides) -> tuple[Finding, Inertia]:
+def run_phases(
+    progress: SearchState, sides: Sides, by_machine_code: Iterations | None = None
+) -> tuple[Finding, Inertia]:
     """Repeat both phases until a claim passes its check, or until iterations or attempts are exhausted.
 
+    Machine code, if there is any, takes the regular iterations before each of the first attempts.
     The second result is the inertia of the reduced Hessian at the start of phase two; zeros if it was not reached.
     """
     failures = renewals = 0
     start: Inertia | None = None
     while failures < FAILURES:
+        if by_machine_code is not None and failures == 0:
+            sides = by_machine_code(progress, sides)
         working, certificate = reach_feasibility(progress, sides, FINER**failures)
         sides = working.sides
         if certificate is not None:
@@ -292,8 +303,23 @@ def minimize_qp(
         sides = np.where(_wanted(working_set, sides.size), sides, 0).astype(np.int8)
     elif x0 is not None:
         sides = supporting(progress, sides)
-    finding, reduced_start = run_phases(progress, sides)
+    finding, reduced_start = run_phases(progress, sides, _machine_code(options, n))
     return _result(stated, scales, progress, finding, reduced_start)
+
+
+def _machine_code(options: QPOptions, n: int) -> Iterations | None:
+    """`regular_iterations`, or None without numba, where it is not wanted, and where the program is large."""
+    wanted = compilation.numba_is_imported() if options.by_numba is None else options.by_numba
+    return _regular_iterations() if wanted and n <= WORTH_EDGES else None
+
+
+@lru_cache(maxsize=1)
+def _regular_iterations() -> Iterations | None:
+    """`tableau.regular_iterations`, or None without numba; its first call compiles it, which takes seconds once."""
+    try:
+        return import_module("bemcontact.formulations.local_solver.tableau").regular_iterations  # it imports numba
+    except ImportError:
+        return None
 
 
 def _wanted(working_set: ArrayLike, size: int) -> BoolArray:
@@ -328,6 +354,7 @@ def _result(stated: Statement, scales: Scales, progress: SearchState, finding: F
         weakly_active=finding.weak,
         ray=None if finding.ray is None else scales.variables * finding.ray,
         certificate=None if finding.certificate is None else scales.multipliers(finding.certificate),
+        by_numba=progress.by_numba,
         violation=largest(stated.violation(stated.values(x))),
         log=tuple(progress.lines),
     )

@@ -52,6 +52,7 @@ class SearchState:
     x, values, gradient : the point (n,), [x; A x] (n + m,), and H x + c (n,)
     slack : (n + m,) tolerance of each constraint: relative to its smaller bound, and no less than the rounding of A x
     lowest, highest : (n + m,) bounds with their tolerances added
+    by_numba : whether machine code took iterations
     far : no less than the largest distance from zero so far
     zero : size of a gradient or multiplier that counts as zero: relative to its terms
     """
@@ -71,13 +72,14 @@ class SearchState:
     long: float = field(init=False)
     changes: int = 0
     stalled: int = 0
+    by_numba: bool = False
     lines: list[LogLine] = field(default_factory=list)
     _usual: tuple[Array, Array, Array] | None = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         statement, options = self.statement, self.options
-        self._part, self._least = 1.0 / self.x.size, max(statement.slope, 1e-3)
-        self._tolerance, self._rounding = options.optimality_tolerance, 100.0 * EPS * statement.row_sum
+        self._part, self.least_terms = 1.0 / self.x.size, max(statement.slope, 1e-3)
+        self.tolerance, self.rounding = options.optimality_tolerance, 100.0 * EPS * statement.row_sum
         self.long = options.feasibility_tolerance / PARALLEL
         self._slack = options.feasibility_tolerance * np.maximum(1.0, statement.bound_size)
         self._least_slack, self._usual = options.feasibility_tolerance, None
@@ -105,7 +107,7 @@ class SearchState:
         size = np.maximum(np.abs(self.x), 1.0)
         self._traveled = np.minimum(self.traveled, size)
         self.far = min(self.far, sqrt(dot(size, size)))
-        self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
+        self.zero = max(self.tolerance * self._terms, self.rounding * self.far)
 
     @property
     def exact_values(self) -> Array:
@@ -255,8 +257,22 @@ class SearchState:
         """Compute the gradient, and what counts as zero beside its terms."""
         product = self.statement.bent(self.x)
         self._seen, self.gradient = self.x, product + self.statement.c
-        self._terms = max(sqrt(dot(product, product) * self._part), self._least)
-        self.zero = max(self._tolerance * self._terms, self._rounding * self.far)
+        self._terms = max(sqrt(dot(product, product) * self._part), self.least_terms)
+        self.zero = max(self.tolerance * self._terms, self.rounding * self.far)
+
+    def take_over(self, x: Array, log: Array, first: int) -> None:
+        """Go on from a point that machine code has reached; the first of its iterations are of phase one.
+
+        Its `log` (6, count) has values and steps, then the constraints that entered and left (negative for none), and
+        the rest of each line.
+        """
+        log[0, first:] /= self.unit
+        numbers = zip(*log[:2].tolist(), *log[2:].astype(int).tolist(), strict=True)
+        for i, (value, step, added, dropped, working, nonpositive) in enumerate(numbers):
+            entered, left = None if added < 0 else added, None if dropped < 0 else dropped
+            self.write(1 if i < first else 2, value, step, entered, left, working, nonpositive)
+        self.stalled, self.by_numba = 0, True
+        self.place(x)
 
     def write(
         self,

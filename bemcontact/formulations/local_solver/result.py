@@ -79,7 +79,9 @@ class QPOptions:
         component
     scale : equilibrate rows and variables by powers of two, which changes no digit of the data
     search : most faces of the critical cone that are examined behind zero multipliers before the status is undecided
-    log : called with each ``LogLine``
+    by_numba : whether machine code of numba, if installed, takes the iterations of programs of up to 250 variables; if
+        None, it does if numba was imported before the first call
+    log : called with each ``LogLine``; with machine code at the end of it
 
     Raises
     ------
@@ -92,6 +94,7 @@ class QPOptions:
     optimality_tolerance: float = 1e-9
     scale: bool = True
     search: int = 2000
+    by_numba: bool | None = None
     log: Callable[[LogLine], None] | None = None
 
     def __post_init__(self) -> None:
@@ -106,6 +109,8 @@ class QPOptions:
             raise ProblemError(f"scale is {shown(self.scale)}: give True or False")
         if not _counts(self.search):
             raise ProblemError(f"search is {shown(self.search)}: give the number of faces to examine, >= 0")
+        if not isinstance(self.by_numba, bool | np.bool_ | None):
+            raise ProblemError(f"by_numba is {shown(self.by_numba)}: give True, False, or None for what is imported")
         if self.log is not None and not callable(self.log):
             raise ProblemError(f"log is {shown(self.log)}: give a function of a LogLine, such as print")
 
@@ -143,6 +148,7 @@ class QPResult:
         variables first. The first holds up to rounding, where an entry of A counts as rounding if one in its column is
         1e15 times as large.
     violation : largest violation of a constraint at x
+    by_numba : whether machine code took iterations
     log : each iteration
     """
 
@@ -162,6 +168,7 @@ class QPResult:
     ray: Array | None
     certificate: Array | None
     violation: float
+    by_numba: bool
     log: tuple[LogLine, ...] = field(repr=False)
 
     @cached_property

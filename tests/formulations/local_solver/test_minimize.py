@@ -112,13 +112,14 @@ def first_order_values(H, c, A, cl, cu, bl, bu):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("by_numba", [False, True])
 @settings(max_examples=300, deadline=None)
-@given(st.integers(0, 10**9))
-@example(5002655)
-@example(5051967)
-def test_every_claim_of_a_random_programme_holds(seed):
+@given(seed=st.integers(0, 10**9))
+@example(seed=5002655)
+@example(seed=5051967)
+def test_every_claim_of_a_random_programme_holds(by_numba, seed):
     H, c, A, cl, cu, bl, bu = random_qp(seed)
-    result = minimize_qp(H, c, A, cl, cu, bl, bu)
+    result = minimize_qp(H, c, A, cl, cu, bl, bu, options=QPOptions(by_numba=by_numba))
     G, low, high = constraints(A, cl, cu, bl, bu)
     if result.status is QPStatus.INFEASIBLE:
         assert_separates(G, low, high, result.certificate)
