@@ -1,6 +1,6 @@
 """Random small integer programs in random units: every claim of the local solver judged in exact arithmetic.
 
-    python tests/benchmarks/local_solver_fuzz.py [--cases 1000000] [--first 0] [--degenerate] [--keep FILE]
+    python tests/benchmarks/local_solver_fuzz.py [--cases 1000000] [--first 0] [--degenerate] [--numba] [--keep FILE]
 
 Each seed makes a program of whole numbers, multiplies its rows, columns and objective by powers of ten, and solves it
 from a random start. A claim that rounding could have decided is judged with fractions on the whole numbers. Each
@@ -27,8 +27,8 @@ from integer_program import (
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
-from bemcontact.formulations.local_solver.minimize import minimize_qp
-from bemcontact.formulations.local_solver.result import QPResult, QPStatus
+from bemcontact.formulations.local_solver.minimize import DEFAULTS, minimize_qp
+from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
 
 Sides = NDArray[np.int64]
 MISSING = (QPStatus.NUMERICAL_FAILURE, QPStatus.UNDECIDED, QPStatus.ITERATION_LIMIT)
@@ -45,25 +45,28 @@ def case(seed: int, *, degenerate: bool = False) -> tuple[IntegerProgram, Units,
     return program, units, start, working_set
 
 
-def solved(program: IntegerProgram, units: Units, start: Array | None, working_set: Sides | None) -> QPResult:
+def solved(
+    program: IntegerProgram, units: Units, start: Array | None, working_set: Sides | None, options: QPOptions = DEFAULTS
+) -> QPResult:
     """The answer in these units; the start is in those of the whole numbers."""
     x0 = None if start is None else start / units.columns
-    return minimize_qp(*program.stated(units), x0=x0, working_set=working_set)
+    return minimize_qp(*program.stated(units), x0=x0, working_set=working_set, options=options)
 
 
-def outcomes(seed: int, *, degenerate: bool = False) -> list[str]:
+def outcomes(seed: int, *, degenerate: bool = False, options: QPOptions = DEFAULTS) -> list[str]:
     """What is to be counted of a seed."""
     program, units, start, working_set = case(seed, degenerate=degenerate)
-    result = solved(program, units, start, working_set)
+    result = solved(program, units, start, working_set, options)
     verdict = judge(program, units, result)
     counted = [f"status: {result.status}"] if verdict in (Verdict.RIGHT, Verdict.NO_CLAIM) else [f"judge: {verdict}"]
     if result.status in ENDS and seed % 4 < 2:
-        again = minimize_qp(*program.stated(units), x0=result.x, working_set=result.working_set if seed % 2 else None)
+        sides = result.working_set if seed % 2 else None
+        again = minimize_qp(*program.stated(units), x0=result.x, working_set=sides, options=options)
         if again.status is not result.status or again.iterations:
             with_set = "with working set" if seed % 2 else "from x alone"
             counted.append(f"restart {with_set}: {result.status} -> {again.status}{', moves' * (again.iterations > 0)}")
     if seed % 10 == 0:
-        plain = solved(program, plain_units(program), start, working_set)
+        plain = solved(program, plain_units(program), start, working_set, options)
         if (of_plain := judge(program, plain_units(program), plain)) not in (Verdict.RIGHT, Verdict.NO_CLAIM):
             counted.append(f"plain: judge: {of_plain}")
         counted.append("plain: solved too")
@@ -82,12 +85,14 @@ def main() -> None:
     parser.add_argument("--cases", type=int, default=1_000_000)
     parser.add_argument("--first", type=int, default=0, help="the first seed")
     parser.add_argument("--degenerate", action="store_true", help="programs with degenerate first-order points")
+    parser.add_argument("--numba", action="store_true", help="machine code takes iterations")
     parser.add_argument("--keep", type=Path, help="file for the seeds of false and missing answers")
     given = parser.parse_args()
+    options = QPOptions(by_numba=given.numba)
     begin, counts = time.perf_counter(), Counter[str]()
     kept = given.keep.open("w") if given.keep else None
     for seed in range(given.first, given.first + given.cases):
-        for name in outcomes(seed, degenerate=given.degenerate):
+        for name in outcomes(seed, degenerate=given.degenerate, options=options):
             counts[name] += 1
             if kept and worth_keeping(name):
                 kept.write(f"{seed} {name}\n")

@@ -26,6 +26,14 @@ INF = np.inf
 BAD = ("judge", "numerical", "restart")
 
 
+@pytest.fixture(autouse=True, scope="module", params=["phases", pytest.param("numba", marks=pytest.mark.slow)])
+def iterations(request):
+    """What takes the regular iterations."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("bemcontact.compilation.numba_is_imported", lambda: request.param == "numba")
+        yield
+
+
 def saddle_in_a_box() -> IntegerProgram:
     """-x1 x2 over [-1, 1]²: a saddle at 0, minimizers -1 at (1, 1) and (-1, -1)."""
     H = np.array([[0.0, -1.0], [-1.0, 0.0]])

@@ -20,11 +20,13 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.compilation import compiled
+from bemcontact.formulations.local_solver.factorizations import dot
 from bemcontact.formulations.local_solver.phase_one import is_violated, put_on_equalities
 from bemcontact.formulations.local_solver.phase_two import ReducedHessian
 from bemcontact.formulations.local_solver.progress import PARALLEL, STALLED, SearchState
 from bemcontact.formulations.local_solver.ratio_test import FAINT
 from bemcontact.formulations.local_solver.statement import EPS, Sides, Statement, largest
+from bemcontact.formulations.local_solver.working_set import EQUALITY
 
 
 def _integers(*numbers: int) -> tuple[Any, ...]:
@@ -185,7 +187,7 @@ def _let_go(t: Tableau, place: int, owner: int) -> None:
 def _hold(t: Tableau, place: int, constraint: int, side: int) -> None:
     """A row of T is that of a constraint which enters the working set."""
     _let_go(t, place, constraint)
-    if side != 2:
+    if side != EQUALITY:
         t.signs[place] = side
     t.sides[constraint] = side
     n = t.owner.size
@@ -261,15 +263,14 @@ def _swap(p: FlatProgram, t: Tableau, place: int, curvature: float, constraint: 
     """
     _look_across(p, t, constraint)
     moved, k, n = t.across[place], t.counts[0], t.owner.size
+    if moved == 0.0:
+        return False
     if k == 0:
-        if moved != 0.0:
-            _exchange(t, place, constraint, side)
-        return moved != 0.0
+        _exchange(t, place, constraint, side)
+        return True
     last = _reflect(t)
     square = last * last * curvature + moved * moved
     if curvature >= 0.0 or square > 0.5 * moved * moved:
-        if not square > 0.0:
-            return False
         root = math.sqrt(square)
         for i in range(k, n):
             t.work[i] = _dot(t.bent, t.T[i]) * (last / root)
@@ -355,7 +356,7 @@ def _nearest(p: FlatProgram, t: Tableau, length: float, end: float, long: float)
 def _side(p: FlatProgram, t: Tableau, constraint: int) -> int:
     """As `ratio_test.side_reached`."""
     if p.equality[constraint]:
-        return 2
+        return EQUALITY
     return -1 if t.along[constraint] < 0.0 else 1
 
 
@@ -407,7 +408,7 @@ def _breakpoint(p: FlatProgram, t: Tableau, signs: Array, length: float) -> tupl
         fall, last = fall - speed, step
         if fall <= 0.0:
             side = _side(p, t, at)
-            return at, side if far or side == 2 else -side, step
+            return at, side if far or side == EQUALITY else -side, step
 
 
 @compiled(inner=True)
@@ -578,7 +579,7 @@ def regular_iterations(progress: SearchState, sides: Sides) -> Sides:
     """
     statement, n = progress.statement, progress.x.size
     violated = is_violated(progress)
-    if violated:
+    if violated and np.count_nonzero(statement.equality[n:]):
         sides = put_on_equalities(progress, sides).sides
     p = FlatProgram(
         H=statement.H, c=statement.c, A=statement.A, lower=statement.lower, upper=statement.upper,
@@ -597,7 +598,7 @@ def regular_iterations(progress: SearchState, sides: Sides) -> Sides:
         t.measures[0], t.counts[2] = statement.objective(t.values[:n]), 0
         descend(p, t, limits)
     count = int(t.counts[1])
-    if count == 0 or not np.isfinite(t.values).all():
+    if count == 0 or not math.isfinite(dot(t.values, t.values)):
         return sides
     progress.take_over(t.values[:n], t.log[:, :count], first)
     return t.sides
@@ -611,7 +612,7 @@ def _start(progress: SearchState, bounds: Sides) -> Tableau:
     return Tableau(
         T=T,
         owner=np.where(bounds != 0, np.arange(n), TEMPORARY),
-        signs=np.where(bounds == 2, 0.0, bounds),
+        signs=np.where(bounds == EQUALITY, 0.0, bounds),
         sides=sides,
         values=progress.values.copy(),
         along=np.empty(size),
