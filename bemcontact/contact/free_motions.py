@@ -164,8 +164,11 @@ class MotionAlgebra:
     @cached_property
     def _inverse(self) -> Array:
         """(ℓᵀR)⁻¹ (k, k); `SingularSystemError` if the motions are singular to working precision."""
+        moments = self.equilibrium.T @ self.rigid_motions
+        if moments.size == 1 and moments.all():
+            return 1 / moments
         try:
-            return np.asarray(np.linalg.inv(self.equilibrium.T @ self.rigid_motions), float)
+            return np.asarray(np.linalg.inv(moments), float)
         except np.linalg.LinAlgError:
             raise SingularSystemError(
                 "the free motions are not independent of each other to working precision; give rigid_motions columns "
