@@ -22,7 +22,7 @@ from bemcontact.analysis.moved_contact import (
     judged_to,
 )
 from bemcontact.analysis.second_solution import NO_CHANGE, SecondSolution
-from bemcontact.arrays import Array, IntArray, indices
+from bemcontact.arrays import Array, IntArray, indices, norm
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
 from bemcontact.bem.surface_gaps import SurfaceGaps
@@ -89,7 +89,7 @@ def placement(
 def _slides(first: MovedContact, body: Body, push: Array) -> Judgement:
     """Judge what work forces gain by the motion in free motions that no pressure resists, push (j,)."""
     contact, pressure = first.contact, first.solution.pressure
-    total, size = float(contact.weights @ pressure), float(np.linalg.norm(push))
+    total, size = float(contact.weights @ pressure), norm(push)
     if size < first.noted * total:
         return None, ()
     motion, least = body.free.combined(push[:, None] / size).describe()[0], judged_to(first.gaps.problem)

@@ -222,7 +222,7 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
     R, load = body.seen_motion, body.seen_load
     (n, k), t = R.shape, len(tools.names)
     gauge = fix_gauge(body.algebra, compliance=compliance, free_displacement=free_displacement)
-    contact = CondensedContact(
+    contact = CondensedContact.computed(
         name=body.problem.name,
         zone_names=zones,
         units={"length": body.problem.units.length, "force": body.problem.units.force},

@@ -7,7 +7,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bemcontact.arrays import Array, BoolArray, short_svd, successive
+from bemcontact.arrays import Array, BoolArray, row_norms, short_svd, successive
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
@@ -167,7 +167,7 @@ def echelon(basis: Array) -> Array:
     """
     if not len(basis):
         return basis
-    rows, size = basis.copy(), _lengths(basis)
+    rows, size = basis.copy(), row_norms(basis)
     if len(rows) < 2:
         first = (abs(rows) >= SLIGHT * size[:, None]).argmax(axis=1)
         return rows / np.copysign(size, rows[np.arange(len(rows)), first])[:, None]
@@ -186,11 +186,6 @@ def echelon(basis: Array) -> Array:
         factors = rows[:, column].copy()
         factors[row] = 0.0
         rows -= factors[:, None] * rows[row]
-        size = _lengths(rows)
+        size = row_norms(rows)
         row += 1
     return rows / size[:, None]
-
-
-def _lengths(rows: Array) -> Array:
-    """Lengths (k,) of rows (k, components)."""
-    return np.sqrt((rows * rows).sum(axis=1))

@@ -8,7 +8,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +17,13 @@ from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays, real_ar
 from bemcontact.checks.arguments import file_path, instance_of, load_factors, whole_number
 from bemcontact.checks.attributes import WithHints
 from bemcontact.contact import archive
-from bemcontact.contact.consistency import ensure_arrays, ensure_independent, ensure_labels, ensure_parts_fit
+from bemcontact.contact.consistency import (
+    ensure_arrays,
+    ensure_independent,
+    ensure_labels,
+    ensure_numbers,
+    ensure_parts_fit,
+)
 from bemcontact.contact.free_motions import (
     ContactScales,
     MotionAlgebra,
@@ -120,6 +126,24 @@ class CondensedContact(WithHints, MotionAlgebra):
             object.__setattr__(self, "pinned", Pinned.none(c, t, self._extent or 1.0))
         ensure_parts_fit(self)
         freeze_arrays(self)
+
+    @classmethod
+    def computed(cls, **fields: Any) -> Self:
+        """Make one of all its fields as `bem` computes them, of which only the numbers are checked.
+
+        Shapes, ranges and order are those by which they were made.
+
+        Raises
+        ------
+        ProblemError
+            There is no contact point, numbers are not finite or too large to compute with, or free motions depend on
+            each other.
+        """
+        contact = object.__new__(cls)
+        vars(contact).update(fields)
+        ensure_numbers(contact)
+        freeze_arrays(contact)
+        return contact
 
     @classmethod
     def from_compliance(

@@ -165,7 +165,7 @@ class MotionAlgebra:
     def _inverse(self) -> Array:
         """(ℓᵀR)⁻¹ (k, k); `SingularSystemError` if the motions are singular to working precision."""
         moments = self.equilibrium.T @ self.rigid_motions
-        if moments.size == 1 and moments.all():
+        if moments.size == 1 and moments[0, 0] != 0.0:
             return 1 / moments
         try:
             return np.asarray(np.linalg.inv(moments), float)
