@@ -67,7 +67,10 @@ def flag_array(value: Any, what: str, shape: Dimensions | None = None) -> BoolAr
 
 
 def read_arrays(
-    instance: Any, shapes: Mapping[str, Dimensions | None], prefix: str = "", reader: Callable[..., NDArray[Any]] = real_array
+    instance: Any,
+    shapes: Mapping[str, Dimensions | None],
+    prefix: str = "",
+    reader: Callable[..., NDArray[Any]] = real_array,
 ) -> None:
     """Read fields of a frozen dataclass as arrays with given shapes; errors call them by the prefix and their names."""
     own = vars(instance)

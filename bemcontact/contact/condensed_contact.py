@@ -128,24 +128,6 @@ class CondensedContact(WithHints, MotionAlgebra):
         freeze_arrays(self)
 
     @classmethod
-    def computed(cls, **fields: Any) -> Self:
-        """Make one of all its fields as `bem` computes them, of which only the numbers are checked.
-
-        Shapes, ranges and order are those by which they were made.
-
-        Raises
-        ------
-        ProblemError
-            There is no contact point, numbers are not finite or too large to compute with, or free motions depend on
-            each other.
-        """
-        contact = object.__new__(cls)
-        vars(contact).update(fields)
-        ensure_numbers(contact)
-        freeze_arrays(contact)
-        return contact
-
-    @classmethod
     def from_compliance(
         cls,
         compliance: ArrayLike,
@@ -503,6 +485,19 @@ class CondensedContact(WithHints, MotionAlgebra):
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read what `save` wrote; `ProblemError` if the file is something else."""
         return archive.read(file_path(path, "the file to read"), cls)
+
+
+def computed_contact(**fields: Any) -> CondensedContact:
+    """Make a contact problem of all fields as `bem` computes them: shapes, ranges and order are not checked.
+
+    `ProblemError` if there is no contact point, numbers are not finite or too large to compute with, or free motions
+    depend on each other.
+    """
+    contact = object.__new__(CondensedContact)
+    vars(contact).update(fields)
+    ensure_numbers(contact)
+    freeze_arrays(contact)
+    return contact
 
 
 def _terms(matrix: Array, columns: Array) -> Array:
