@@ -64,7 +64,7 @@ def linear_theory(
     moved = large_displacements(boundary, change, turns, body.problem)
     if most_strained(body.problem, abs(solution.pressure).max(initial=0.0), change.gradient.max()) <= NOTICED:
         return moved
-    strain, part = contact_strains(body, boundary, solution.pressure)
+    strain, part = contact_strains(body, boundary, change, solution.pressure)
     beyond = _strained(body, contact, solution, where, strain, part) or moved.beyond
     if beyond is not None:
         return Judgment(beyond)
@@ -109,18 +109,18 @@ def most_strained(problem: Problem, pressure: float, gradient: float) -> float:
     return max(bounds)
 
 
-def contact_strains(body: Body, boundary: BoundaryState, pressure: Array) -> tuple[Array, Array]:
-    """Strains (n,) at contact points, and what part (n,) they are of large ones.
+def contact_strains(body: Body, boundary: BoundaryState, rate: RateOfChange, pressure: Array) -> tuple[Array, Array]:
+    """Strains (n,) at contact points, and what part (n,) they are of large ones; `rate` is that of the boundary.
 
     The strain along the normal follows from the pressure and from the strain along the boundary. Shear below the
     surface is measured by the difference of the pressure from the least on the boundary, if that is none of tension: a
     pressure that acts all round shears nothing, however large it is.
     """
     points, other = body.points, body.points.opposite.node
-    strain, part = _strains_at(body, boundary, pressure, points.node)
+    strain, part = _strains_at(body, boundary, rate, pressure, points.node)
     facing = indices(other >= 0)
     if len(facing):
-        both = zip((strain, part), _strains_at(body, boundary, pressure[facing], other[facing]), strict=True)
+        both = zip((strain, part), _strains_at(body, boundary, rate, pressure[facing], other[facing]), strict=True)
         for own, its in both:
             own[facing] = np.maximum(own[facing], its)
     return strain, part
@@ -132,9 +132,11 @@ def _softest(body: Body, point: int) -> float:
     return min(body.material_at(int(node)).young_modulus for node in nodes if node >= 0)
 
 
-def _strains_at(body: Body, boundary: BoundaryState, pressure: Array, nodes: IntArray) -> tuple[Array, Array]:
+def _strains_at(
+    body: Body, boundary: BoundaryState, rate: RateOfChange, pressure: Array, nodes: IntArray
+) -> tuple[Array, Array]:
     """Strains (k,) at nodes (k,) under pressure (k,), and what part (k,) they are of large ones."""
-    along, change, length, _ = RateOfChange.of(boundary)
+    along, change, length, _ = rate
     ends, strain = body.mesh.elements.ravel(), (scalar_products(along, change) / length**2).repeat(3)
     tangential = (np.bincount(ends, strain) / np.bincount(ends))[nodes]
     pressing = -cross(boundary.traction.sum(axis=1), along) / (3 * length)

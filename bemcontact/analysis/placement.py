@@ -55,17 +55,15 @@ def placement(
     notes, moved = tuple(_overhangs(first, beside)) if len(beside) else (), first.moved
     moved.change[beside] = 0.0
     load = load_after(gaps, body, contact, solution, moved, first.noted)
-    push = load.copy()  # nothing holds the unseen motions
     if load.any():
-        ways = first.unheld()
+        push, ways = load.copy(), first.unheld()  # nothing holds the unseen motions
         push[: len(ways)] = ways @ (ways.T @ load[: len(ways)])
+        misfit, said = _slides(first, body, push)
+        if misfit is not None:
+            return misfit, notes
+        notes, load = (*notes, *said), load - push
     largest = (contact.weights @ solution.pressure) * abs(contact.rigid_motions).max(axis=0, initial=0.0)
-    load = (load - push)[: contact.free_motions]
-    load = np.where(abs(load) > NO_CHANGE * largest, load, 0.0)
-    misfit, said = _slides(first, body, push)
-    if misfit is not None:
-        return misfit, notes
-    notes = (*notes, *said)
+    load = np.where(abs(load[: contact.free_motions]) > NO_CHANGE * largest, load[: contact.free_motions], 0.0)
     change = max(abs(moved.change).max() / contact.scales.displacement, abs(moved.turn).max())
     if change <= NO_CHANGE and not load.any():
         return None, notes

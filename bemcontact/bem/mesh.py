@@ -149,9 +149,8 @@ class Mesh:
     @cached_property
     def centroid(self) -> Array:
         """Mean (2,) of the boundary [L]. It turns with the body, as the middle of a bounding box does not."""
-        first, weights = self.nodes[0], np.repeat(self.tributary[..., None], 2, axis=2)
-        moments = (self.nodes[self.elements] - first) * weights
-        return first + moments.sum(axis=(0, 1)) / weights.sum(axis=(0, 1))
+        first, weights = self.nodes[0], self.tributary.ravel()
+        return first + weights @ (self.nodes[self.elements.ravel()] - first) / weights.sum()
 
     @cached_property
     def reference_length(self) -> float:
@@ -213,8 +212,9 @@ class Mesh:
 
     def _tangents(self, derivatives: Array) -> Array:
         """dx/dξ (m, q, 2) [L], from the derivatives (q, 3) of the shape functions."""
-        nodes = self.nodes[self.elements]
-        return derivatives @ (nodes - nodes[:, 1:2])  # which keeps the digits of short elements
+        x_and_y = self.nodes.T[:, self.elements]  # one after the other, as BLAS multiplies them
+        steps = x_and_y - x_and_y[..., 1:2]  # which keeps the digits of short elements
+        return (steps @ derivatives.T).transpose(1, 2, 0)
 
 
 class MeshPart(NamedTuple):
