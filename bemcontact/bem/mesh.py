@@ -3,7 +3,6 @@
 import dataclasses
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -12,6 +11,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray, indices, magnitudes, scalar_products
 from bemcontact.bem import reference_element
 from bemcontact.bem.division import Facing, divided
+from bemcontact.cached import cached_property
 from bemcontact.problems.conditions import Along
 from bemcontact.problems.curves import Edge
 from bemcontact.problems.problem import Problem

@@ -10,7 +10,7 @@ In this module lengths are divided by L0 and stresses by the shear modulus (see 
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from importlib import import_module
 from typing import NamedTuple
 
@@ -25,6 +25,7 @@ from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.unit_pressures import UnitPressures
+from bemcontact.cached import cached_property
 from bemcontact.problems.material import Material
 
 AXES = np.eye(2)

@@ -7,13 +7,13 @@ Lengths and stresses are in the user's units.
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays, real_array, whole_array
+from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import file_path, instance_of, load_factors, whole_number
 from bemcontact.checks.attributes import WithHints
 from bemcontact.contact import archive

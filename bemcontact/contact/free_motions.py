@@ -1,13 +1,13 @@
 """Algebra of the free rigid motions: scales, equilibrium ℓᵀp = -load with ℓ = J R, the gauge, the stiffness rows."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 import scipy
 
 from bemcontact.arrays import Array, BoolArray, least_squares, nonnegative_residual, real_array, short_svd
+from bemcontact.cached import cached_property
 from bemcontact.errors import ProblemError, SingularSystemError
 
 INTERFERENCE = 1e-6

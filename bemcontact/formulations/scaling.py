@@ -5,11 +5,11 @@ motion by its own largest component along the normals. A change of units leaves 
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales, MotionAlgebra
 from bemcontact.contact.load_cases import Change
