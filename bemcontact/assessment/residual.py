@@ -81,7 +81,7 @@ def _pressure_that_moves(contact: CondensedContact, displacement: Array) -> Arra
     R, ell, (U, T) = contact.rigid_motions, contact.equilibrium, contact.scales
     n, k = R.shape
     size = np.abs(ell).max(axis=0, initial=0.0)
-    bordered = np.zeros((n + k, n + k), order="F")  # as LAPACK takes it, without a copy
+    bordered = np.zeros((n + k, n + k))
     bordered[:n, :n], bordered[:n, n:], bordered[n:, :n] = contact.compliance * (T / U), R, (ell / size).T
     factors = LU.of(bordered)
     if factors.singular:

@@ -149,8 +149,9 @@ class Mesh:
     @cached_property
     def centroid(self) -> Array:
         """Mean (2,) of the boundary [L]. It turns with the body, as the middle of a bounding box does not."""
-        first, weights = self.nodes[0], self.tributary.ravel()
-        return first + weights @ (self.nodes[self.elements.ravel()] - first) / weights.sum()
+        first, weights = self.nodes[0], np.repeat(self.tributary[..., None], 2, axis=2)
+        moments = (self.nodes[self.elements] - first) * weights
+        return first + moments.sum(axis=(0, 1)) / weights.sum(axis=(0, 1))
 
     @cached_property
     def reference_length(self) -> float:
