@@ -142,9 +142,7 @@ def _strains_at(
     pressing = -cross(boundary.traction.sum(axis=1), along) / (3 * length)
     strain, part = np.zeros(len(nodes)), np.zeros(len(nodes))
     for on_mesh, stated in zip(body.mesh.parts, body.problem.parts, strict=True):
-        own = slice(None)
-        if not on_mesh.whole:
-            own = np.isin(nodes, on_mesh.nodes)
+        own = slice(None) if isinstance(on_mesh.nodes, slice) else np.isin(nodes, on_mesh.nodes)
         least = max(float(pressing[on_mesh.elements].min()), 0.0)
         strain[own], part[own] = _strains_of(stated.material, pressure[own], tangential[own], least)
     return strain, part
