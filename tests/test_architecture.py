@@ -15,8 +15,20 @@ Rule = Callable[[str, ast.Module], Iterator[str]]
 FOUNDATION = (
     "errors", "checks", "arrays", "threads", "compilation", "serialization", "options", "version", "files", "views",
 )  # fmt: skip
+    "cached",
+    "errors",
+    "checks",
+    "arrays",
+    "threads",
+    "serialization",
+    "options",
+    "version",
+    "files",
+    "views",
+)
 
 ROOMS = {
+    "cached": (),
     "errors": (),
     "checks": ("errors",),
     "arrays": ("errors", "checks"),
@@ -27,11 +39,11 @@ ROOMS = {
     "version": (),
     "views": (),
     "files": ("errors",),
-    "problems": ("errors", "checks", "arrays", "options", "views"),
+    "problems": ("cached", "errors", "checks", "arrays", "options", "views"),
     "spec": ("errors", "checks", "arrays", "files", "problems"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problems", "contact"),
-    "formulations.local_solver": ("errors", "checks", "arrays", "threads", "compilation"),
+    "formulations.local_solver": ("cached", "errors", "checks", "arrays", "threads", "compilation"),
     "formulations": (*FOUNDATION, "contact", "formulations.local_solver"),
     "assessment": (*FOUNDATION, "contact"),
     "adaptivity": (*FOUNDATION, "problems", "contact", "bem", "formulations", "assessment"),

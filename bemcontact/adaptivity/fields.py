@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from bemcontact.bem.condense import Condensation, boundary_changes, boundary_sta
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.surface_gaps import surface_gaps
+from bemcontact.cached import cached_property
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import SingularSystemError, SolverError

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from itertools import pairwise
 from math import pi
 
@@ -11,6 +11,7 @@ import numpy as np
 from bemcontact.adaptivity.sizes import Limit, Loop
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.mesh import CORNER
+from bemcontact.cached import cached_property
 from bemcontact.problems.body_surface import AnyShape, BodySurface
 from bemcontact.problems.curves import Edge
 from bemcontact.problems.nearest_places import gaps, nearest_places, surface_corners

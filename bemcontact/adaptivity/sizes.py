@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 from math import ceil
 from typing import NamedTuple
@@ -10,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.arrays import Array, IntArray
+from bemcontact.cached import cached_property
 from bemcontact.problems.curves import Edge
 
 GROWTH = 1.2

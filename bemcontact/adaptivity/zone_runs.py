@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from bemcontact.assessment.footprint import ContactInterval
 from bemcontact.bem.body import Body
 from bemcontact.bem.contact_points import ALIKE
 from bemcontact.bem.mesh import CORNER
+from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problems.body_surface import BodyZone

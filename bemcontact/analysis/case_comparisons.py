@@ -1,13 +1,13 @@
 """Formulations compared under all load cases and combinations of a problem, on one mesh."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 from bemcontact.analysis.compare import compared_on, settings_of
 from bemcontact.analysis.load_cases import CaseResults, prepared_cases
 from bemcontact.analysis.mesh_study import LevelRecord, MeshLevel, Settings, versions
 from bemcontact.analysis.solve import Progress, Stopwatch
 from bemcontact.assessment.accuracy import together
+from bemcontact.cached import cached_property
 from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.options import ComparisonOptions
 from bemcontact.problems.problem import Problem

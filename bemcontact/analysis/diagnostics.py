@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from bemcontact.adaptivity.zone_runs import SAME
 from bemcontact.analysis.spline_bulges import bulging
-from bemcontact.arrays import indices, short_svd
+from bemcontact.arrays import indices, norm, short_svd
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.bem.body import Body
 from bemcontact.bem.mesh import CORNER
@@ -138,7 +138,7 @@ def hardly_held(
         changes = np.linalg.solve(sizes.T, changes.T).T.astype(float)
         least = short_svd(changes)[1][-1:].T  # the translation that changes gaps least
         moved, changes = moved @ least, changes @ least
-    slope = float(np.abs(changes).max() / np.linalg.norm(moved))
+    slope = float(np.abs(changes).max() / norm(moved[:, 0]))
     if slope <= SLOPE and not (slope <= LEVEL and undetermined):
         direction = moved[:2, 0] / np.linalg.norm(moved)
         x, y = np.round(np.copysign(1.0, direction[np.argmax(abs(direction))]) * direction, 2) + 0.0

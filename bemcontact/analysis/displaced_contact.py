@@ -221,7 +221,7 @@ def turn_of_body(gaps: SurfaceGaps, part: MeshPart | None = None) -> float:
     """Turn [rad] nearest to the displacement of the boundary, or of that of one body."""
     mesh, own = (gaps.outline.mesh, slice(None)) if part is None else part[:2]
     length, x, u = mesh.tributary, gaps.state.points[own] - mesh.centroid, gaps.state.displacement[own]
-    return float((length * cross(x, u)).sum() / (length * scalar_products(x, x)).sum())
+    return float(np.vdot(length, cross(x, u)) / np.vdot(length, scalar_products(x, x)))
 
 
 def _gain_of_levers(gaps: SurfaceGaps, body: Body, part: MeshPart, center: Array) -> tuple[Array, float]:
@@ -232,7 +232,7 @@ def _gain_of_levers(gaps: SurfaceGaps, body: Body, part: MeshPart, center: Array
     """
     mesh, own, angle = part.mesh, part.elements, turn_of_body(gaps, part)
     length, r = mesh.tributary, gaps.state.points[own] - center
-    dead = float((length * scalar_products(gaps.state.traction[own], r)).sum())
+    dead = float(np.vdot(length, scalar_products(gaps.state.traction[own], r)))
     following = {edge for edge, held in _conditions(gaps) if held.pressure is not None}
     with_face = np.array([name in following for name in mesh.edge_names])[mesh.edge]
     if not with_face.any():

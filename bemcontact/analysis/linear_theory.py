@@ -8,12 +8,12 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from bemcontact.analysis.diagnostics import points_in
-from bemcontact.arrays import Array, IntArray, indices, magnitudes
+from bemcontact.arrays import Array, IntArray, indices, magnitudes, scalar_products
 from bemcontact.assessment.footprint import Footprint
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
 from bemcontact.bem.boundary_values import BoundaryState
-from bemcontact.bem.mesh import CORNER, Mesh
+from bemcontact.bem.mesh import CORNER
 from bemcontact.bem.symmetry import symmetry_lines
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
@@ -64,7 +64,7 @@ def linear_theory(
     moved = large_displacements(boundary, change, turns, body.problem)
     if most_strained(body.problem, abs(solution.pressure).max(initial=0.0), change.gradient.max()) <= NOTICED:
         return moved
-    strain, part = contact_strains(body, boundary, solution.pressure)
+    strain, part = contact_strains(body, boundary, change, solution.pressure)
     beyond = _strained(body, contact, solution, where, strain, part) or moved.beyond
     if beyond is not None:
         return Judgment(beyond)
@@ -109,18 +109,18 @@ def most_strained(problem: Problem, pressure: float, gradient: float) -> float:
     return max(bounds)
 
 
-def contact_strains(body: Body, boundary: BoundaryState, pressure: Array) -> tuple[Array, Array]:
-    """Strains (n,) at contact points, and what part (n,) they are of large ones.
+def contact_strains(body: Body, boundary: BoundaryState, rate: RateOfChange, pressure: Array) -> tuple[Array, Array]:
+    """Strains (n,) at contact points, and what part (n,) they are of large ones; `rate` is that of the boundary.
 
     The strain along the normal follows from the pressure and from the strain along the boundary. Shear below the
     surface is measured by the difference of the pressure from the least on the boundary, if that is none of tension: a
     pressure that acts all round shears nothing, however large it is.
     """
     points, other = body.points, body.points.opposite.node
-    strain, part = _strains_at(body, boundary, pressure, points.node)
+    strain, part = _strains_at(body, boundary, rate, pressure, points.node)
     facing = indices(other >= 0)
     if len(facing):
-        both = zip((strain, part), _strains_at(body, boundary, pressure[facing], other[facing]), strict=True)
+        both = zip((strain, part), _strains_at(body, boundary, rate, pressure[facing], other[facing]), strict=True)
         for own, its in both:
             own[facing] = np.maximum(own[facing], its)
     return strain, part
@@ -132,38 +132,31 @@ def _softest(body: Body, point: int) -> float:
     return min(body.material_at(int(node)).young_modulus for node in nodes if node >= 0)
 
 
-def _strains_at(body: Body, boundary: BoundaryState, pressure: Array, nodes: IntArray) -> tuple[Array, Array]:
+def _strains_at(
+    body: Body, boundary: BoundaryState, rate: RateOfChange, pressure: Array, nodes: IntArray
+) -> tuple[Array, Array]:
     """Strains (k,) at nodes (k,) under pressure (k,), and what part (k,) they are of large ones."""
-    mesh, strain, part = body.mesh, np.zeros(len(nodes)), np.zeros(len(nodes))
-    for number, on_mesh in enumerate(mesh.parts):
-        new = np.full(len(mesh.nodes), -1)
-        new[on_mesh.nodes] = np.arange(len(on_mesh.mesh.nodes))
-        own = indices(new[nodes] >= 0)
-        material = body.problem.parts[number].material
-        values = boundary.points[on_mesh.elements], boundary.displacement[on_mesh.elements]
-        traction = boundary.traction[on_mesh.elements]
-        strain[own], part[own] = _strains_of(material, on_mesh.mesh, *values, traction, pressure[own], new[nodes[own]])
+    along, change, length, _ = rate
+    ends, strain = body.mesh.elements.ravel(), (scalar_products(along, change) / length**2).repeat(3)
+    tangential = (np.bincount(ends, strain) / np.bincount(ends))[nodes]
+    pressing = -cross(boundary.traction.sum(axis=1), along) / (3 * length)
+    strain, part = np.zeros(len(nodes)), np.zeros(len(nodes))
+    for on_mesh, stated in zip(body.mesh.parts, body.problem.parts, strict=True):
+        own = slice(None) if isinstance(on_mesh.nodes, slice) else np.isin(nodes, on_mesh.nodes)
+        least = max(float(pressing[on_mesh.elements].min()), 0.0)
+        strain[own], part[own] = _strains_of(stated.material, pressure[own], tangential[own], least)
     return strain, part
 
 
-def _strains_of(
-    material: Material, mesh: Mesh, points: Array, displacement: Array, traction: Array, pressure: Array, at: IntArray
-) -> tuple[Array, Array]:
-    """The same of one body, at nodes (k,) of its mesh."""
+def _strains_of(material: Material, pressure: Array, tangential: Array, least: float) -> tuple[Array, Array]:
+    """The same of one body, from strains (k,) along its boundary and the least pressure on it that is no tension."""
     E, nu = material.young_modulus, material.poisson_ratio
-    along, change = (values[:, 2] - values[:, 0] for values in (points, displacement))
-    length = np.hypot(*along.T)
-    nodes, strain = mesh.elements.ravel(), np.repeat((along * change).sum(axis=1) / length**2, 3)
-    of_node, elements = np.bincount(nodes, strain), np.bincount(nodes)
-    tangential = (of_node / np.maximum(elements, 1.0))[at]
     if material.state == "plane_strain":
         normal = -(pressure * (1 + nu) * (1 - 2 * nu) / E + nu * tangential) / (1 - nu)
     else:
         normal = -(pressure * (1 - nu**2) / E + nu * tangential)
-    outward = along[:, ::-1] * (1, -1) / length[:, None]
-    least = float(-(traction.mean(axis=1) * outward).sum(axis=1).max())
-    sheared = (pressure - max(least, 0.0)) / E
-    return np.maximum(abs(normal), sheared), np.maximum(sheared / LARGE, abs(normal) / LARGE_STRAIN)
+    normal, sheared = abs(normal), (pressure - least) / E
+    return np.maximum(normal, sheared), np.maximum(sheared / LARGE, normal / LARGE_STRAIN)
 
 
 def _strained(

@@ -2,7 +2,6 @@
 
 import platform
 from dataclasses import dataclass, replace
-from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
 
 from bemcontact.analysis.result import Result
@@ -10,6 +9,7 @@ from bemcontact.assessment.accuracy import Accuracy, together
 from bemcontact.assessment.comparison import Comparison, ComparisonRecord
 from bemcontact.assessment.convergence import Convergence, convergence
 from bemcontact.assessment.penetration import Penetration
+from bemcontact.cached import cached_property
 from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problems.problem import Problem

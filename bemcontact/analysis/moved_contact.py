@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.penetration import Misfit, Penetration, tolerated
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.surface_gaps import SurfaceGaps
+from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.solution import ContactSolution

@@ -22,7 +22,7 @@ from bemcontact.analysis.moved_contact import (
     judged_to,
 )
 from bemcontact.analysis.second_solution import NO_CHANGE, SecondSolution
-from bemcontact.arrays import Array, IntArray, indices
+from bemcontact.arrays import Array, IntArray, indices, norm
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
 from bemcontact.bem.surface_gaps import SurfaceGaps
@@ -55,17 +55,15 @@ def placement(
     notes, moved = tuple(_overhangs(first, beside)) if len(beside) else (), first.moved
     moved.change[beside] = 0.0
     load = load_after(gaps, body, contact, solution, moved, first.noted)
-    push = load.copy()  # nothing holds the unseen motions
     if load.any():
-        ways = first.unheld()
+        push, ways = load.copy(), first.unheld()  # nothing holds the unseen motions
         push[: len(ways)] = ways @ (ways.T @ load[: len(ways)])
+        misfit, said = _slides(first, body, push)
+        if misfit is not None:
+            return misfit, notes
+        notes, load = (*notes, *said), load - push
     largest = (contact.weights @ solution.pressure) * abs(contact.rigid_motions).max(axis=0, initial=0.0)
-    load = (load - push)[: contact.free_motions]
-    load = np.where(abs(load) > NO_CHANGE * largest, load, 0.0)
-    misfit, said = _slides(first, body, push)
-    if misfit is not None:
-        return misfit, notes
-    notes = (*notes, *said)
+    load = np.where(abs(load[: contact.free_motions]) > NO_CHANGE * largest, load[: contact.free_motions], 0.0)
     change = max(abs(moved.change).max() / contact.scales.displacement, abs(moved.turn).max())
     if change <= NO_CHANGE and not load.any():
         return None, notes
@@ -89,7 +87,7 @@ def placement(
 def _slides(first: MovedContact, body: Body, push: Array) -> Judgement:
     """Judge what work forces gain by the motion in free motions that no pressure resists, push (j,)."""
     contact, pressure = first.contact, first.solution.pressure
-    total, size = float(contact.weights @ pressure), float(np.linalg.norm(push))
+    total, size = float(contact.weights @ pressure), norm(push)
     if size < first.noted * total:
         return None, ()
     motion, least = body.free.combined(push[:, None] / size).describe()[0], judged_to(first.gaps.problem)

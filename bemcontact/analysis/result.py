@@ -1,7 +1,6 @@
 """The result of a contact problem: its solution and all quantities recomputed from it."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +18,7 @@ from bemcontact.assessment.footprint import (
 from bemcontact.assessment.penetration import Penetration
 from bemcontact.assessment.residual import Residuals
 from bemcontact.bem.boundary_values import BoundaryState
+from bemcontact.cached import cached_property
 from bemcontact.checks.attributes import ByName
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.multistart import RandomStarts

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -15,6 +14,7 @@ from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.outline import Outline
 from bemcontact.bem.stress_field import Located, StressField, smooth_starts
+from bemcontact.cached import cached_property
 from bemcontact.contact.stress import (
     INSIDE,
     ON_BOUNDARY,

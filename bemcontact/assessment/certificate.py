@@ -37,7 +37,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, norm, row_norms
 from bemcontact.assessment.definiteness import EPS, Definiteness
 from bemcontact.assessment.equations import TIE, ContactEquations, balanced, round_off_of_equilibrium
 from bemcontact.assessment.reach import points_that_may_touch
@@ -180,10 +180,10 @@ def _bound_by(
     imbalance, beside, tilted = round_off_of_equilibrium(equations, y, np.maximum(D * delta, 0.0), round_off)
     if imbalance == np.inf:
         return None
-    off = float(np.linalg.norm(p - y)) + imbalance
+    off = norm(p - y) + imbalance
     if stiff.eigenvalue is None:
         return off * T * (1 + 4 * EPS)
-    of_gaps, round_off = round_off, round_off + D * np.linalg.norm(M, axis=1) * imbalance
+    of_gaps, round_off = round_off, round_off + D * row_norms(M) * imbalance
     work = np.where(y > 0, 0.0, np.maximum(D * delta - round_off, 0.0))
     lacking = beside.any() or tilted is not None
     least = D * delta if tilted is None else np.minimum(D * delta, (1 - TIE) * tilted - TIE * np.abs(D * delta))
@@ -211,7 +211,7 @@ def _bound_near(state: NearState, enough: float) -> float:
         if state.definiteness.definite:
             bound = state.definiteness.largest_change(state.residual)
         elif (eigenvalue := effective_eigenvalue(state)) is not None:
-            bound = float(np.linalg.norm(state.residual)) / eigenvalue
+            bound = norm(state.residual) / eigenvalue
     if bound > enough and (state.equilibrium.size or not definite):
         bound = min(bound, near_bound(state))
     if bound > enough and not state.definiteness.definite:
@@ -229,7 +229,7 @@ def _by_energy(
     D, M = equations.weights, equations.compliance
     step, left = equations.step_to_balance(y, imbalance)
     moved = D * (delta + M @ step)
-    round_off = round_off + D * np.linalg.norm(M, axis=1) * left
+    round_off = round_off + D * row_norms(M) * left
     lost = np.where((y > 0) | (moved < round_off), round_off, 0.0)
     return stiff.change_by_energy(np.where(y > 0, moved, np.minimum(moved, 0.0)), lost)
 

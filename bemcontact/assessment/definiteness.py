@@ -6,7 +6,7 @@ from typing import Self
 import numpy as np
 from scipy.linalg import get_lapack_funcs, solve_triangular
 
-from bemcontact.arrays import Array, short_svd
+from bemcontact.arrays import Array, norm, row_norms, short_svd
 
 geqrf, ormqr, syevr, syevr_lwork = get_lapack_funcs(("geqrf", "ormqr", "syevr", "syevr_lwork"), dtype=float)
 EPS = float(np.finfo(float).eps)
@@ -49,20 +49,21 @@ class Definiteness:
             return cls(scales=S, reach=np.zeros(n), eigenvalue=None, certain=np.inf, form=none[:0], space=none)
         A, spread, reach = S[:, None] * (D[:, None] * M) * S, 1.0, np.ones(n)
         K, terms, Z = (A + A.T) / 2, np.abs(A), np.eye(n)
+        largest = float((terms @ reach + reach @ terms).max())
         if k := ell.shape[1]:
-            ell = ell / np.sqrt((ell * ell).sum(axis=0))
+            ell = ell / row_norms(ell.T)
             sizes, (reflectors, factors, *_) = short_svd(ell)[0], geqrf(ell)
             spread = float(sizes[0] / sizes[-1]) if sizes[-1] else np.inf
             Z, half = (_times_q(part, reflectors, factors)[:, k:] for part in (Z, K))
             K = _times_q(half.T, reflectors, factors)[:, k:]
-            reach = np.minimum(np.sqrt((Z * Z).sum(axis=1)) + n * EPS * spread, 1.0)
+            reach = np.minimum(row_norms(Z) + n * EPS * spread, 1.0)
         smallest = least_eigenvalue(K)
-        round_off = n * EPS * spread * float((terms.sum(axis=0) + terms.sum(axis=1)).max()) / 2
+        round_off = n * EPS * spread * largest / 2
         return cls(scales=S, reach=reach, eigenvalue=smallest, certain=smallest - round_off, form=K, space=Z)
 
     def largest_change(self, s: Array, work: float = 0.0) -> float:
         """Change of a pressure, at most, by forces up to s (n,) and work w: max Sᵢ|Zᵢ|(|ZᵀSs|/λ + √(w/λ))."""
-        part = min(np.linalg.norm(self.scales * s), self.reach @ (self.scales * s))
+        part = min(norm(self.scales * s), self.reach @ (self.scales * s))
         return float((self.scales * self.reach).max(initial=0.0) * (part / self.certain + np.sqrt(work / self.certain)))
 
     def change_by_energy(self, s: Array, lost: Array) -> float:

@@ -16,8 +16,10 @@ from bemcontact.arrays import (
     Array,
     exact_remainders,
     least_squares,
+    norm,
     powers_of_two,
     product_remainders,
+    row_norms,
     short_svd,
     sum_remainders,
 )
@@ -63,7 +65,7 @@ class ContactEquations:
         """Take the units out of a contact problem."""
         rounded = powers_of_two if exact else np.asarray
         U, T = rounded(np.array(contact.scales)).tolist()
-        length = rounded(np.linalg.norm(contact.equilibrium, axis=0))
+        length = rounded(row_norms(contact.equilibrium.T))
         offset_rest, ell_rest = contact.offset[:0], contact.equilibrium[:0]
         if exact:
             offset_rest = sum_remainders(contact.initial_gap, contact.free_displacement)
@@ -132,7 +134,7 @@ def round_off_of_equilibrium(
         left, lost = equations.imbalance(carried)
         left = np.abs(left) + lost
         size, beside, tilted = _least_change(ell, y > least, left, gaps, round_off)
-        change = max(change, size + float(np.linalg.norm(y - carried)))
+        change = max(change, size + norm(y - carried))
     return change, np.where(y > 0, 0.0, beside), tilted
 
 
@@ -149,7 +151,7 @@ def _least_change(
     own = ell[carries]
     sizes, axes = short_svd(own)
     if (rank := int(np.count_nonzero(sizes > lost))) == ell.shape[1]:  # rows of the pseudo-inverse are these times Uᵀ
-        return float(np.linalg.norm(axes.T / sizes, axis=1) @ left), beside, None
+        return float(row_norms(axes.T / sizes) @ left), beside, None
     if rank == ell.shape[1] - 1:
         return _tilted(ell, carries, left, gaps, round_off, axes[-1])
     columns, size = np.vstack([ell, -ell[carries]]).T, 0.0

@@ -37,7 +37,6 @@ a bound of |e| <= |v| + η that takes the place of B, and so on: in the end litt
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 import scipy
@@ -45,6 +44,7 @@ from scipy.linalg import eigh
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.definiteness import EPS, SURE, Definiteness, least_eigenvalue
+from bemcontact.cached import cached_property
 
 MOST = 8
 """Eigenvectors with which a proof is tried."""

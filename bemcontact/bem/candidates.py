@@ -313,8 +313,9 @@ def _joined(
         jumps |= (first_alike >= 0) & jumps[first_alike]
         first_alike[jumps] = -1
     alone = first_alike == np.arange(len(node))
-    own, number, sense = indices(alone), alone.cumsum() - 1, np.ones(len(node))
-    if len(own) < len(node):
+    shared, number, sense = not alone.all(), alone.cumsum() - 1, np.ones(len(node))
+    own = indices(alone) if shared else slice(None)
+    if shared:
         sense[(normals * normals[first_alike]).sum(axis=1) < 0] = -1.0
         number = np.where(first_alike < 0, -1, number[first_alike])
     elements, points, senses = [], [], []
@@ -322,14 +323,14 @@ def _joined(
     held_points = np.array([piece.held_points for piece in pieces])
     for row, (first, piece) in enumerate(zip(accumulate(sizes, initial=0), pieces, strict=False)):
         for end, i in enumerate((0, len(piece.nodes) - 1) if len(piece.nodes) else ()):
-            shared = first_alike[first + i] not in (-1, first + i)  # is a point of another zone
-            if shared or jumps[first + i]:  # contact goes on up to there
+            of_other = first_alike[first + i] not in (-1, first + i)  # is a point of another zone
+            if of_other or jumps[first + i]:  # contact goes on up to there
                 held_arc[row, end], held_points[row, end] = piece.arc[i], mesh.nodes[piece.nodes[i]]
         point_of = np.full(len(mesh.nodes), -1)
         point_of[piece.nodes] = number[first : first + len(piece.nodes)]
         its_nodes = mesh.elements[piece.elements]
         carrier, signs = point_of[its_nodes], np.ones(its_nodes.shape)
-        if len(own) < len(node):
+        if shared:
             sense_of = np.ones(len(mesh.nodes))
             sense_of[piece.nodes] = sense[first : first + len(piece.nodes)]
             signs = sense_of[its_nodes]

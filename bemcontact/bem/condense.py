@@ -23,7 +23,7 @@ from bemcontact.bem.rigid_motions import all_rigid_motions
 from bemcontact.bem.solution import solve_system
 from bemcontact.bem.support import ensure_held
 from bemcontact.bem.system import System
-from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact, computed_contact
 from bemcontact.contact.free_motions import Gauge, fix_gauge
 from bemcontact.contact.load_cases import LoadCases, Tools
 from bemcontact.problems.curves import cross
@@ -222,7 +222,7 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
     R, load = body.seen_motion, body.seen_load
     (n, k), t = R.shape, len(tools.names)
     gauge = fix_gauge(body.algebra, compliance=compliance, free_displacement=free_displacement)
-    contact = CondensedContact(
+    contact = computed_contact(
         name=body.problem.name,
         zone_names=zones,
         units={"length": body.problem.units.length, "force": body.problem.units.force},

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +11,7 @@ from bemcontact.arrays import Array, BoolArray, IntArray, indices, magnitudes
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.unit_pressures import UnitPressures
+from bemcontact.cached import cached_property
 
 ALIKE = 1e-9
 """Difference of two normals, or of two gaps over the size of the body, at one node that counts as none."""

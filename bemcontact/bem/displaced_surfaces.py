@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -10,6 +9,7 @@ from bemcontact.arrays import Array, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.outline import Outline
+from bemcontact.cached import cached_property
 from bemcontact.problems.body_surface import AnyShape, BodySurface
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import DeflectedContour

@@ -11,7 +11,6 @@ Stresses are divided by the shear modulus.
 import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +21,7 @@ from bemcontact.bem import kernels, reference_element
 from bemcontact.bem.kernels import GaussRule
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.skeleton import RATIO, disc, skeleton
+from bemcontact.cached import cached_property
 from bemcontact.threads import one_thread, share_out
 
 ROWS_PER_BLOCK = 160

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +14,7 @@ from bemcontact.bem.influence import Collocation, Influence, InfluenceRows
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.reference_element import RHO_OF_T
 from bemcontact.bem.symmetry import SymmetryLine
+from bemcontact.cached import cached_property
 
 PAIRS = 16_000
 """Pairs of a point and an element at a time: about ten arrays of them stay in the second-level cache."""

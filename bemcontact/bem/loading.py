@@ -237,6 +237,8 @@ def permanent_loading(problem: Problem, mesh: Mesh) -> Loading:
 
 def case_loadings(problem: Problem, mesh: Mesh) -> list[Loading]:
     """The loading by each load case alone; `ProblemError` if it contradicts itself at a corner."""
+    if not problem.load_cases:
+        return []
     cases = zip(problem.load_cases.items(), problem.volume_loads[1:], strict=True)
     return [_case_loading(problem, mesh, name, case, loads) for (name, case), loads in cases]
 

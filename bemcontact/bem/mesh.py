@@ -3,7 +3,6 @@
 import dataclasses
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -12,6 +11,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray, indices, magnitudes, scalar_products
 from bemcontact.bem import reference_element
 from bemcontact.bem.division import Facing, divided
+from bemcontact.cached import cached_property
 from bemcontact.problems.conditions import Along
 from bemcontact.problems.curves import Edge
 from bemcontact.problems.problem import Problem
@@ -213,8 +213,9 @@ class Mesh:
 
     def _tangents(self, derivatives: Array) -> Array:
         """dx/dξ (m, q, 2) [L], from the derivatives (q, 3) of the shape functions."""
-        nodes = self.nodes[self.elements]
-        return derivatives @ (nodes - nodes[:, 1:2])  # which keeps the digits of short elements
+        x_and_y = self.nodes.T[:, self.elements]  # one after the other, as BLAS multiplies them
+        steps = x_and_y - x_and_y[..., 1:2]  # which keeps the digits of short elements
+        return (steps @ derivatives.T).transpose(1, 2, 0)
 
 
 class MeshPart(NamedTuple):

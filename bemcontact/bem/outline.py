@@ -3,7 +3,6 @@
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -12,6 +11,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray, indices
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
+from bemcontact.cached import cached_property
 from bemcontact.problems.body_surface import AnyShape, AnySurface, BodySurface
 from bemcontact.problems.curves import Edge
 from bemcontact.problems.nearest_places import nearest_places, surface_corners

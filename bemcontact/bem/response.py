@@ -9,12 +9,12 @@ than round-off are all pressures refined, and the condition of A is looked at: t
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Self
 
 import numpy as np
 
 from bemcontact.arrays import Array, IntArray
+from bemcontact.cached import cached_property
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
 

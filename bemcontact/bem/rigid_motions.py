@@ -1,13 +1,14 @@
 """Rigid motions of one body, those that no condition prevents, and their names."""
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import compress
 from math import hypot
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bemcontact.arrays import Array, BoolArray, short_svd, successive
+from bemcontact.arrays import Array, BoolArray, row_norms, short_svd, successive
 from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
@@ -131,11 +132,11 @@ def free_rigid_motions(mesh: Mesh, held: BoundaryValues, radius: float | None = 
     """
     center, radius = mesh.center, mesh.size / 2 if radius is None else radius
     free = _unheld(held.displacement_given, (mesh.nodes - center) / radius)
-    every = RigidMotions(coefficients=np.eye(3), center=center, radius=radius)
+    motions_of = partial(RigidMotions, center=center, radius=radius)
     if held.stiffness.any():
-        values, vectors = short_svd(_stretched(every, mesh, held.stiffness) @ free.T)
+        values, vectors = short_svd(_stretched(motions_of(coefficients=np.eye(3)), mesh, held.stiffness) @ free.T)
         free = vectors[values <= HELD * max([1.0, *values[:1]])] @ free
-    return every if len(free) == 3 else RigidMotions(coefficients=echelon(free), center=center, radius=radius)
+    return motions_of(coefficients=np.eye(3) if len(free) == 3 else echelon(free))
 
 
 def _unheld(given: BoolArray, places: Array) -> Array:
@@ -144,10 +145,10 @@ def _unheld(given: BoolArray, places: Array) -> Array:
     A body turns if all given components of x have one y, and those of y one x: about this place.
     """
     of_x, of_y = places[given[:, 0], 1], places[given[:, 1], 0]
-    low, high = np.array([(lever.min(), lever.max()) if len(lever) else (0.0, 0.0) for lever in (of_x, of_y)]).T
-    y, x = ((low + high) / 2).tolist()
-    motions = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (y, -x, 1.0)
-    free = not len(of_x), not len(of_y), bool((high - low <= HELD).all())
+    levers = (lever if len(lever) else np.zeros(1) for lever in (of_x, of_y))
+    (bottom, top), (left, right) = ((float(lever.min()), float(lever.max())) for lever in levers)
+    motions = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), ((bottom + top) / 2, -(left + right) / 2, 1.0)
+    free = not len(of_x), not len(of_y), max(top - bottom, right - left) <= HELD
     return np.array([*compress(motions, free)]).reshape(-1, 3)
 
 
@@ -167,7 +168,7 @@ def echelon(basis: Array) -> Array:
     """
     if not len(basis):
         return basis
-    rows, size = basis.copy(), _lengths(basis)
+    rows, size = basis.copy(), row_norms(basis)
     if len(rows) < 2:
         first = (abs(rows) >= SLIGHT * size[:, None]).argmax(axis=1)
         return rows / np.copysign(size, rows[np.arange(len(rows)), first])[:, None]
@@ -186,11 +187,6 @@ def echelon(basis: Array) -> Array:
         factors = rows[:, column].copy()
         factors[row] = 0.0
         rows -= factors[:, None] * rows[row]
-        size = _lengths(rows)
+        size = row_norms(rows)
         row += 1
     return rows / size[:, None]
-
-
-def _lengths(rows: Array) -> Array:
-    """Lengths (k,) of rows (k, components)."""
-    return np.sqrt((rows * rows).sum(axis=1))

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -15,6 +14,7 @@ from bemcontact.bem.loading import VolumeField, particular_field
 from bemcontact.bem.mesh import CORNER, Mesh
 from bemcontact.bem.outline import ROUGH, Outline
 from bemcontact.bem.symmetry import SymmetryLine, symmetry_lines
+from bemcontact.cached import cached_property
 from bemcontact.problems.conditions import Loads
 from bemcontact.problems.material import Material
 from bemcontact.problems.nearest_places import surface_corners

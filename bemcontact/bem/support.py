@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray, nonnegative_residual
+from bemcontact.arrays import Array, BoolArray, nonnegative_residual, norm
 from bemcontact.bem.body import Body
 from bemcontact.bem.free_motions import BODY, UNSEEN, FreeMotions
 from bemcontact.bem.rigid_motions import toward
@@ -89,7 +89,7 @@ def _check_support(body: Body) -> None:
     """Refuse loads that no pressure p >= 0 can balance, and a body that no load presses on."""
     R, load = body.relative_load
     pull = nonnegative_residual(R.T, -load)
-    if np.linalg.norm(pull) > BALANCED:
+    if norm(pull) > BALANCED:
         raise ProblemError(_pull(body, body.seen.combined(pull[:, None])))
     unloaded = load.size and not load.any()
     if unloaded and (_may_leave(R) or (idle_motion(body) is not None and not _may_be_squeezed(body))):

@@ -6,7 +6,6 @@ that of the elements.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import permutations
 from typing import NamedTuple
 
@@ -19,6 +18,7 @@ from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.contact_points import ALIKE, SMOOTH
 from bemcontact.bem.displaced_surfaces import DisplacedSurfaces
 from bemcontact.bem.outline import NODES
+from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.problems.body_surface import AnyShape, BodySurface

@@ -9,7 +9,7 @@ In this module lengths are divided by L0 and stresses by the shear modulus (see 
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from importlib import import_module
 from typing import NamedTuple
 
@@ -25,8 +25,11 @@ from bemcontact.bem.loading import Loading
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.unit_pressures import UnitPressures
+from bemcontact.cached import cached_property
 from bemcontact.problems.material import Material
 
+AXES = np.eye(2)
+"""Unit tractions along x and y."""
 OFFSET = 2 / 3
 """|ξ| of the collocation points inside the two elements at a node where both prescribe the displacement."""
 WORTH_COMPILING = 3000
@@ -75,18 +78,18 @@ def number_unknowns(mesh: Mesh, values: BoundaryValues) -> Unknowns:
     """Number the columns of the unknowns."""
     free = ~values.displacement_given
     displacement = np.full(free.shape, -1)
-    displacement.T[free.T] = np.arange(free.sum())
-    traction = np.full((*mesh.elements.shape, 2), -1)
-    count = int(free.sum())
+    traction, count = np.full((*mesh.elements.shape, 2), -1), int(np.count_nonzero(free))
+    displacement.T[free.T] = np.arange(count)
     if not values.traction_unknown.any():
         return Unknowns(displacement=displacement, traction=traction, size=count)
     slot, smooth = np.arange(3 * len(mesh.elements)).reshape(-1, 3), _continues_straight(mesh)
     slot[smooth, 0] = slot[mesh.before[smooth], 2]
     for axis, sought in enumerate(values.traction_unknown.T):
-        used = np.zeros(slot.size, bool)
-        used[slot[sought]] = True
-        traction[sought, :, axis] = count - 1 + used.cumsum()[slot[sought]]
-        count += int(np.count_nonzero(used))
+        used, places = np.zeros(slot.size, bool), slot[sought]
+        used[places] = True
+        number = used.cumsum()
+        traction[sought, :, axis] = count - 1 + number[places]
+        count += int(number[-1])
     return Unknowns(displacement=displacement, traction=traction, size=count)
 
 
@@ -289,7 +292,7 @@ class System:
         first = int((self.unknowns.displacement >= 0).sum())
         columns = self.unknowns.traction[self.influence.traction_elements] - first
         element, local, axis = np.nonzero(columns >= 0)
-        return self._carried(element, local, columns[element, local, axis], np.eye(2)[axis], self.unknowns.size - first)
+        return self._carried(element, local, columns[element, local, axis], AXES[axis], self.unknowns.size - first)
 
     @cached_property
     def _sprung(self) -> IntArray:
@@ -405,7 +408,7 @@ class System:
             ),
             traction=np.concatenate(
                 [
-                    -np.eye(2)[axis] * jacobians.reshape(-1, 1)[sought],
+                    -AXES[axis] * jacobians.reshape(-1, 1)[sought],
                     pressed,
                     springs * jacobians[element, local],
                 ]

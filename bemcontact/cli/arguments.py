@@ -8,13 +8,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
 from enum import StrEnum
-from functools import cached_property
 from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
 import typer
 
+from bemcontact.cached import cached_property
 from bemcontact.errors import KeyPath, OptionError, ProblemError, SpecError, escaped
 from bemcontact.options import EXPECTED_ACCURACY, ComparisonOptions, SolveOptions, StartName
 

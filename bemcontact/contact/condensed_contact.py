@@ -7,17 +7,23 @@ Lengths and stresses are in the user's units.
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays, real_array, whole_array
+from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import file_path, instance_of, load_factors, whole_number
 from bemcontact.checks.attributes import WithHints
 from bemcontact.contact import archive
-from bemcontact.contact.consistency import ensure_arrays, ensure_independent, ensure_labels, ensure_parts_fit
+from bemcontact.contact.consistency import (
+    ensure_arrays,
+    ensure_independent,
+    ensure_labels,
+    ensure_numbers,
+    ensure_parts_fit,
+)
 from bemcontact.contact.free_motions import (
     ContactScales,
     MotionAlgebra,
@@ -479,6 +485,19 @@ class CondensedContact(WithHints, MotionAlgebra):
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read what `save` wrote; `ProblemError` if the file is something else."""
         return archive.read(file_path(path, "the file to read"), cls)
+
+
+def computed_contact(**fields: Any) -> CondensedContact:
+    """Make a contact problem of all fields as `bem` computes them: shapes, ranges and order are not checked.
+
+    `ProblemError` if there is no contact point, numbers are not finite or too large to compute with, or free motions
+    depend on each other.
+    """
+    contact = object.__new__(CondensedContact)
+    vars(contact).update(fields)
+    ensure_numbers(contact)
+    freeze_arrays(contact)
+    return contact
 
 
 def _terms(matrix: Array, columns: Array) -> Array:

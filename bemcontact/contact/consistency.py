@@ -43,6 +43,13 @@ def ensure_arrays(contact: Any) -> None:
     _ensure_order(contact)
 
 
+def ensure_numbers(contact: Any) -> None:
+    """Refuse what the body and its load may be the reason of in arrays that were computed: too large, or dependent."""
+    contact_shape(contact)
+    read_arrays(contact, dict.fromkeys(("compliance", "free_displacement", "motion_load", "initial_gap")))
+    ensure_independent(contact.rigid_motions)
+
+
 def contact_shape(contact: Any) -> tuple[int, int]:
     """Number n of points and k of free motions, from the free motions (n, k), which are read."""
     read_arrays(contact, {"rigid_motions": (None, None)})

@@ -1,13 +1,13 @@
 """Algebra of the free rigid motions: scales, equilibrium ℓᵀp = -load with ℓ = J R, the gauge, the stiffness rows."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 import scipy
 
 from bemcontact.arrays import Array, BoolArray, least_squares, nonnegative_residual, real_array, short_svd
+from bemcontact.cached import cached_property
 from bemcontact.errors import ProblemError, SingularSystemError
 
 INTERFERENCE = 1e-6
@@ -164,8 +164,11 @@ class MotionAlgebra:
     @cached_property
     def _inverse(self) -> Array:
         """(ℓᵀR)⁻¹ (k, k); `SingularSystemError` if the motions are singular to working precision."""
+        moments = self.equilibrium.T @ self.rigid_motions
+        if moments.size == 1 and moments[0, 0] != 0.0:
+            return 1 / moments
         try:
-            return np.asarray(np.linalg.inv(self.equilibrium.T @ self.rigid_motions), float)
+            return np.asarray(np.linalg.inv(moments), float)
         except np.linalg.LinAlgError:
             raise SingularSystemError(
                 "the free motions are not independent of each other to working precision; give rigid_motions columns "

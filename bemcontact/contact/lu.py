@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, Self
 
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
 from bemcontact.arrays import Array, IntArray
+from bemcontact.cached import cached_property
 from bemcontact.threads import one_thread
 
 lange, getrf, gecon, getrs, laswp = get_lapack_funcs(("lange", "getrf", "gecon", "getrs", "laswp"), dtype=float)

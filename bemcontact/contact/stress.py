@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array, IntArray
+from bemcontact.cached import cached_property
 from bemcontact.checks.attributes import PLACE, WithHints, Words
 from bemcontact.options import StressMeasure
 

@@ -6,12 +6,12 @@ handful of steps on contact problems, but it may cycle.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 import scipy
 
 from bemcontact.arrays import Array, BoolArray, IntArray, exact_remainders, powers_of_two
+from bemcontact.cached import cached_property
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import qr
 
-from bemcontact.arrays import Array, BoolArray, IntArray, nonnegative_residual
+from bemcontact.arrays import Array, BoolArray, IntArray, nonnegative_residual, norm
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status, Trace, traces_in_turn
 from bemcontact.formulations.active_set import (
@@ -110,7 +110,7 @@ def escape_note(contact: CondensedContact) -> str | None:
 
 def _escapes(scaled: ScaledContact, loose: Array) -> bool:
     """Whether the part of the load that no pressure carries is more than round-off."""
-    return bool(loose.any() and np.linalg.norm(loose) > BALANCED * np.linalg.norm(scaled.motion_load))
+    return bool(loose.any() and norm(loose) > BALANCED * norm(scaled.motion_load))
 
 
 def escape_words(contact: CondensedContact, motion: Array) -> str:

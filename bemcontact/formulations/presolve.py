@@ -1,12 +1,13 @@
 """A cone program of cvxpy without the variables that one equation alone fixes, and the way back to all of them."""
 
 import copy
-from functools import cached_property
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from scipy.sparse import csc_array, csr_array
+
+from bemcontact.cached import cached_property
 
 
 class FixedVariables:

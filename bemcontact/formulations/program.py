@@ -5,12 +5,12 @@ x = (u_n, p), or (u_n, p, a) where the compliance rows bring in the amplitudes; 
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from bemcontact.arrays import Array
+from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations.local_solver.factorizations import inertia
 from bemcontact.formulations.local_solver.minimize import minimize_qp

@@ -5,11 +5,11 @@ motion by its own largest component along the normals. A change of units leaves 
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales, MotionAlgebra
 from bemcontact.contact.load_cases import Change
@@ -56,10 +56,11 @@ class ScaledContact(MotionAlgebra):
     def residual(self, pressure: Array, amplitudes: Array) -> float:
         """Largest of |min(p, δ)| and |ℓᵀp + load| / Σ|ℓ|, over the size 1 + max|p| + Σ|a| of the numbers in them."""
         n = len(pressure)
-        left = self.constant + self.matrix @ np.concatenate([pressure, amplitudes])
-        left[:n], left[n:] = np.minimum(pressure, left[:n]), left[n:] / self._levers
-        size = 1.0 + abs(pressure).max(initial=0.0) + abs(amplitudes).sum()
-        return float(abs(left).max(initial=0.0) / size)
+        numbers = np.concatenate([pressure, amplitudes])
+        left, sizes = self.constant + self.matrix @ numbers, abs(numbers)
+        left[:n] = np.minimum(pressure, left[:n])
+        left[n:] /= self._levers
+        return float(abs(left).max() / (1.0 + sizes[:n].max() + sizes[n:].sum()))
 
     @cached_property
     def _levers(self) -> Array:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from numbers import Real
 from typing import Any, cast
 
@@ -10,6 +9,7 @@ import cvxpy as cp
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import instance_of, real_number, shown
 from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.condensed_contact import CondensedContact

@@ -1,13 +1,13 @@
 """Parameters of a model: initial gap, load cases and tools as parameters of cvxpy, and the sums that they enter."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, cast
 
 import cvxpy as cp
 import numpy as np
 
 from bemcontact.arrays import Array, real_array
+from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
 

@@ -4,6 +4,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import chain
 from typing import Any, Protocol, TypedDict, Unpack, cast, runtime_checkable
 
 from bemcontact.checks.arguments import real_number, shown
@@ -34,6 +35,8 @@ USES: Mapping[FormulationName, tuple[str, ...]] = {
     FormulationName.COMPLEMENTARITY: (),
 }
 """Options that a formulation has a use for, besides those that all take."""
+UNUSED = {name: sorted({*chain.from_iterable(USES.values())} - {*used}) for name, used in USES.items()}
+"""The others."""
 
 
 class Weights(StrEnum):
@@ -271,7 +274,7 @@ class SolveOptions:
         """Refuse an option that was set and that the formulation has no use for."""
         used = USES[self.formulation]
         takes = f"it takes {', '.join(used)}; " if used else ""
-        for option in sorted({name for names in USES.values() for name in names} - {*used}):
+        for option in UNUSED[self.formulation]:
             default, value = getattr(SolveOptions, option), getattr(self, option)
             is_set = self.is_random or value not in (None, StartName.NULL) if option == "start" else value != default
             if is_set:

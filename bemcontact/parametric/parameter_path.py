@@ -4,7 +4,6 @@ import csv
 import io
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from importlib import import_module
 from os import PathLike
 
@@ -14,6 +13,7 @@ from pydantic import computed_field
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar, Quantity, together
 from bemcontact.assessment.footprint import ContactInterval, Footprint, footprint
 from bemcontact.assessment.penetration import Penetration
+from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.parametric.path import LoadPath

@@ -19,7 +19,6 @@ stays, the position jumps.
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -28,6 +27,7 @@ from scipy.linalg import eigvalsh, null_space, qr
 
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.definiteness import Definiteness
+from bemcontact.cached import cached_property
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError

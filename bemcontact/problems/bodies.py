@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import (
@@ -14,6 +13,7 @@ from pydantic import (
     model_validator,
 )
 
+from bemcontact.cached import cached_property
 from bemcontact.problems.boundary import Boundary
 from bemcontact.problems.conditions import Condition, Loads
 from bemcontact.problems.contact_zone import Names

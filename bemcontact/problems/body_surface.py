@@ -2,13 +2,13 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from itertools import chain, permutations
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
+from bemcontact.cached import cached_property
 from bemcontact.problems.curves import Curve, Edge, Segment, cross, inner
 from bemcontact.problems.edge_places import (
     CORNER,

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 from math import atan2, cos, degrees, fsum, hypot, log, pi, radians, sin
 from typing import Protocol
@@ -10,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.cached import cached_property
 from bemcontact.problems.elliptic import second_kind
 
 Pair = tuple[float, float]

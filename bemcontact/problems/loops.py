@@ -60,7 +60,7 @@ def winds_once(line: Array, distance: float) -> bool:
     one between them on either way around. They are no nearer to each other than the least distance of a side from the
     mean times the least sine of an angle, which has to be more than the `distance` [L].
     """
-    x, y = (line - line[:-1].mean(axis=0)).T
+    x, y = (line - line[:-1].sum(axis=0) / (len(line) - 1)).T
     turn = x[:-1] * y[1:] - y[:-1] * x[1:]
     if turn[0] < 0:
         turn, y = -turn, -y

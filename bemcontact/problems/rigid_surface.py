@@ -47,9 +47,7 @@ class Plane(SmoothSurface):
         """Gap and normal at points (k, 2) [L]."""
         point, normal = self._frame
         offset = np.asarray(points, float) - point
-        normals = np.empty_like(offset)
-        normals[:] = normal
-        return Closest(offset @ normal, normals)
+        return Closest(offset @ normal, normal[None].repeat(len(offset), axis=0))
 
 
 class Circle(SmoothSurface):

@@ -1,12 +1,12 @@
 """Smooth curves through points, parametrized by their arc length."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 import scipy
 
 from bemcontact.arrays import Array, magnitudes
+from bemcontact.cached import cached_property
 from bemcontact.problems.curves import Pair
 
 ORDER = 16

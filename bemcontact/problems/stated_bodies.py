@@ -204,7 +204,7 @@ class StatedBodies(SpecModel, Drawn):
     @property
     def zones(self) -> Mapping[str, ContactZone | BodyZone]:
         """The contact zones, then the contacts between bodies as zones on the surface of the second body."""
-        zones = self._zones
+        zones = self._known("_zones")
         if self.contacts and not zones:
             zones.update(self.contact_zones)
             of_contacts = {name: self._zone_of(item.between, item.gap) for name, item in self.contacts.items()}
@@ -227,6 +227,12 @@ class StatedBodies(SpecModel, Drawn):
             of_bonds = {name: self._zone_of(sides, 0.0) for name, sides in self.bonded.items()}
             self._bonds.update(approached(of_bonds))
         return self._bonds
+
+    def _known(self, name: str) -> dict[str, Any]:
+        """A private attribute, without looking for it in all other places first."""
+        private = self.__pydantic_private__
+        assert private is not None
+        return private[name]
 
     def _zone_of(self, between: tuple[Sequence[str], Sequence[str]], gap: float) -> BodyZone:
         """A contact between two bodies as a zone on the surface of the second one."""
@@ -416,7 +422,7 @@ class StatedBodies(SpecModel, Drawn):
         ----------
         zone : name of the zone
         """
-        known = self._edges
+        known = self._known("_edges")
         if zone not in known:
             known[zone] = zone_edges(self.edges, self.zones[zone], self._held_edges())
         return known[zone]

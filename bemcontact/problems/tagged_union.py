@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
+from bemcontact.cached import cached_property
 from bemcontact.errors import Issue
 from bemcontact.problems.validation import SpecModel, invalid, validation_error
 from bemcontact.problems.wording import described, unknown_word

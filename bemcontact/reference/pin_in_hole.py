@@ -1,7 +1,6 @@
 """A round pin in a round hole of an infinite plate, pressed without friction on any part of its circumference."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import atan, pi, radians, sqrt, tan
 from typing import NamedTuple
 
@@ -9,6 +8,7 @@ import numpy as np
 import scipy
 
 from bemcontact.arrays import Array
+from bemcontact.cached import cached_property
 from bemcontact.problems.material import Material
 
 TERMS = 40

@@ -5,11 +5,11 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, cast
 
 import numpy as np
 
+from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import instance_of, shown, text_of_argument
 from bemcontact.errors import Issue, KeyPath, OptionError, ProblemError, SpecError, dotted
 from bemcontact.problems.key_path import parsed_path

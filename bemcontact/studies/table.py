@@ -6,12 +6,12 @@ import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from bemcontact.assessment.accuracy import together
+from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import is_real
 from bemcontact.contact.record import UnitsRecord
 from bemcontact.problems.units import Units

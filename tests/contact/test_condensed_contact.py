@@ -7,7 +7,7 @@ import pytest
 from contact_problems import in_units, random_contact
 
 import bemcontact
-from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.condensed_contact import CondensedContact, computed_contact
 from bemcontact.contact.free_motions import MotionAlgebra, fix_gauge
 from bemcontact.contact.load_cases import LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError, SingularSystemError
@@ -82,6 +82,22 @@ def test_arrays_are_read_only():
 def test_arrays_that_state_no_problem_are_refused(changes, text):
     with pytest.raises(ProblemError, match=text):
         replace(random_contact(0, 12, 2), **changes)
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({"compliance": np.full((12, 12), np.nan)}, "compliance has entries that are not finite"),
+        ({"motion_load": np.array([1e200, 0.0])}, "motion_load has entries that are too large to compute with"),
+        ({"rigid_motions": np.ones((12, 2))}, "rigid_motions needs independent columns"),
+        ({"rigid_motions": np.ones((0, 2))}, "a contact problem needs at least one contact point"),
+    ],
+)
+def test_numbers_that_a_body_may_be_the_reason_of_are_refused(changes, text):
+    stated = {item.name: getattr(random_contact(0, 12, 2), item.name) for item in fields(CondensedContact)}
+    assert not computed_contact(**stated | {"weights": np.ones(12)}).weights.flags.writeable
+    with pytest.raises(ProblemError, match=text):
+        computed_contact(**stated | changes)
 
 
 HIDDEN, PLAIN = "a\x1b[31m", CondensedContact.from_compliance([[1.0]], [-1.0])

@@ -1,5 +1,6 @@
 """Every file in models/gallery/ meets its references by each formulation on its stated mesh and on finer ones."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -46,6 +47,18 @@ def scores(name: str, formulation: str, refine: int, case: str | None = None) ->
     answer = result(name, formulation, refine, case)
     known = expected(problem(name, refine, case), answer.contact)
     return score(known, answer.contact, answer.footprint, answer.solution.pressure)
+
+
+@pytest.mark.parametrize(("name", "case"), CASES)
+def test_condensed_problems_pass_the_checks_of_what_users_state(name, case):
+    """Those that condensation leaves out: labels, shapes, ranges, and the order of points."""
+    contact = condensed(name, 1, case)
+    stated = replace(contact)
+    parts = "tools", "cases", "pinned"
+    for name, value in vars(stated).items():
+        if name not in parts:
+            np.testing.assert_equal(value, getattr(contact, name))
+    assert all(getattr(stated, part) is getattr(contact, part) for part in parts)
 
 
 def test_gallery_is_complete():

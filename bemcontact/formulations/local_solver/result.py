@@ -3,13 +3,13 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bemcontact.arrays import Array
+from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import shown
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia

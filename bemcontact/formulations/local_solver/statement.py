@@ -1,7 +1,6 @@
 """The quadratic program, and the check of the data on entry."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import sqrt
 from typing import Any
 
@@ -10,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
 from bemcontact.arrays import Array, BoolArray, real_array
+from bemcontact.cached import cached_property
 from bemcontact.errors import ProblemError
 
 Sides = NDArray[np.int8]

@@ -8,13 +8,13 @@ although the profile is unknown. Without them, complementarity is dropped, and t
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import cvxpy as cp
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray, freeze_arrays
+from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales
 from bemcontact.contact.stress_operator import StressOperator

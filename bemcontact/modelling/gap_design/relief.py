@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import combinations
 from typing import Any, NamedTuple, Self
 
@@ -11,6 +10,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, IntArray, freeze_arrays, real_array
+from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import real_number, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError

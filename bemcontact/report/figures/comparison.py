@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +11,7 @@ from bemcontact.analysis.mesh_study import MeshLevel
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
 from bemcontact.assessment.comparison import SAME, Contender
+from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.options import FormulationName
