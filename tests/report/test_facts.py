@@ -161,8 +161,8 @@ def test_a_rotation_has_an_angle():
     assert rotations_of((1e-15, 0.05, 0.0)) == ["about (1, 2): 0", "about (3, 4): 0.05 rad"]
 
 
-def test_a_rotation_of_unknown_unit_has_no_amount_unless_it_is_zero():
-    assert rotations_of(None) == ["about (1, 2): 0", "about (3, 4)"]
+def test_a_rotation_that_is_not_known_has_no_amount():
+    assert rotations_of(None) == ["about (1, 2)", "about (3, 4)"]
 
 
 def rotations_of(rotations: tuple[float, ...] | None) -> list[str]:
