@@ -286,7 +286,7 @@ def motions_of_pairs(
     gaps = np.array([touching[name].offset if name in touching else 0.0 for name in names])
     motion -= gaps[contact.zone, None] * contact.normals
     found = dict[str, PairMotion]()
-    for signs in moved_together(touching, body.problem.bonded_groups):
+    for signs in moved_together(touching, body.problem.bonded_groups, smooth=True):
         own, sign = [names.index(name) for name in signs], np.array([*signs.values()])
         signed = sign[:, None] * contact.weights_by_zone[own] * pressure
         force = abs(signed).sum()
