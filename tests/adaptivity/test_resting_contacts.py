@@ -1,5 +1,6 @@
 """Bodies that are drawn elsewhere than where they come to touch have the answer of those that are drawn there."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -445,3 +446,24 @@ def test_contacts_with_faces_that_meet_in_a_corner_rest_as_those_with_faces_apar
 
     (whole, one), (cut, other) = ends(left=(0, 0)), ends(foot=(0.1, 0.1), left=(-0.1, 0.1))
     assert (np.hypot(*(whole - cut).T) < one + other).all()
+
+
+def test_load_cases_note_how_far_contact_is_from_where_it_would_be_alone():
+    """Load cases share the pairs of bodies as drawn. Alone, cantilevers are paired where they have slid to.
+
+    Their contact is as long, so that no note says that it is shorter: ends move by whole elements, pressure does not.
+    """
+    problem = bemcontact.load(MODELS / "bodies" / "two_cantilevers.yaml")
+    pressed = {"conditions": {"upper/pressed": {"pressure": 0.1}}}
+    spec = problem.to_dict() | {"load_cases": {"heavy": pressed}}
+    del spec["bodies"]["upper"]["conditions"]["pressed"], spec["reference"]
+    result = bemcontact.solve_cases(bemcontact.problem(spec)).results["heavy"]
+    alone = bemcontact.solve(problem)
+    (here,), (there,) = result.intervals, alone.intervals
+    off = abs(np.mean(here.arc) - np.mean(there.arc)) / there.length
+    assert off > 0.01
+    assert here.length == pytest.approx(there.length, rel=2e-3)
+    told = [float(found[1]) for note in result.notes if (found := re.search(r"elsewhere by up to ([\d.e+-]+) %", note))]
+    assert len(told) == 1
+    assert off <= told[0] / 100 <= 3 * off
+    assert not any("shorter" in note for note in result.notes)
