@@ -199,8 +199,9 @@ class SecondSolution:
         shifts, grown = np.zeros((2, len(was)))
         for i in np.flatnonzero((before != after).any(axis=1) & (longer > 0)):
             both = np.stack([before[i], after[i]])
-            (middle, spread), (moved, now) = self._within(was[i].run, both[:, 0].min(), both[:, 1].max())
-            shifts[i], grown[i] = abs(moved - middle) / longer[i], now / spread - 1 if spread > 0 else 0.0
+            middles, spreads = self._within(was[i].run, both[:, 0].min(), both[:, 1].max())
+            if spreads.all():
+                shifts[i], grown[i] = abs(middles[1] - middles[0]) / longer[i], spreads[1] / spreads[0] - 1
         if shifts[number := int(np.argmax(shifts))] >= self.first.noted:
             yield (
                 f"with the gaps after the motion of the body, contact of '{was[number].zone}' is elsewhere by "
@@ -214,18 +215,19 @@ class SecondSolution:
                 "its length and ends do not include this"
             )
 
-    def _within(self, run: int, start: float, end: float) -> Iterator[tuple[float, float]]:
-        """Middle of the pressure between two arc positions, from the first, and its root mean square from there [L].
+    def _within(self, run: int, start: float, end: float) -> tuple[Array, Array]:
+        """Middle (2,) of the pressure of both solutions between two arc positions, and its root mean square (2,) [L].
 
-        Those of both solutions.
+        The former is from the first position, the latter from the middle. Both are zero without pressure.
         """
         contact = self.first.contact
         along = (contact.arc_position - start) % contact.run_length[contact.run]  # infinite before an open stretch
         own = (contact.run == run) & (along <= end - start)
-        for solution in (self.first.solution, self.solution):
-            force = contact.weights[own] * solution.pressure[own]
-            middle = float(force @ along[own] / force.sum())
-            yield middle, float(np.sqrt(force @ (along[own] - middle) ** 2 / force.sum()))
+        pressures = np.stack([self.first.solution.pressure, self.solution.pressure])[:, own]
+        force, along = contact.weights[own] * pressures, along[own]
+        total = np.maximum(force.sum(axis=1), np.finfo(float).tiny)
+        middles = force @ along / total
+        return middles, np.sqrt((force * (along - middles[:, None]) ** 2).sum(axis=1) / total)
 
     def _contacts(self) -> tuple[IntArray, BoolArray]:
         """Zone (c,) and points (c, n) of each unbroken contact of one of both solutions; of one alone, the zone.

@@ -4,10 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, indices
 from bemcontact.bem.body import Body
 from bemcontact.problems.body_surface import BodySurface
 from bemcontact.problems.curves import cross
+
+ALIKE = 1e-9
+"""Relative difference of the motions of two bodies that is round-off."""
 
 
 def known_arms(body: Body) -> Array | None:
@@ -46,14 +49,17 @@ def amounts(body: Body, amplitudes: Array, displacement: Array) -> Array:
 
 
 def _of_elastic_contacts(body: Body) -> Iterator[tuple[int, int]]:
-    """Free motions that contact sees, with the body that moves or turns most, where that touches elastic bodies."""
+    """Free motions that contact sees, with the body that moves or turns most, if it touches elastic bodies.
+
+    It is the first of those that move alike.
+    """
     problem, seen, names = body.problem, body.seen, [part.name for part in body.problem.parts]
     surfaces = {name: zone.surface for name, zone in problem.zones.items()}
     pairs = [name for name, it in surfaces.items() if isinstance(it, BodySurface) and it.first]
     touching = {names.index(name) for pair in pairs for name in problem.touching_bodies(pair)}
     for motion, row in enumerate(seen.coefficients):
         coefficients = row.reshape(-1, 3)  # of each body, then of each tool
-        turns = coefficients[:, 2] if np.isfinite(seen.arms[motion]) else np.hypot(*coefficients[:, :2].T)
-        part = int(abs(turns).argmax())
-        if part in touching:
-            yield motion, part
+        moved = abs(coefficients[:, 2]) if np.isfinite(seen.arms[motion]) else np.hypot(*coefficients[:, :2].T)
+        most = indices(moved >= (1 - ALIKE) * moved.max()).tolist()
+        if parts := [part for part in most if part in touching]:
+            yield motion, parts[0]
