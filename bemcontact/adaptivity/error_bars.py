@@ -16,6 +16,7 @@ from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside, images
 from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.bem import reference_element
+from bemcontact.bem.body_motions import amounts
 from bemcontact.contact.free_motions import angle_of_round_off
 
 SAFETY = 1.5
@@ -198,14 +199,12 @@ class _Motion(NamedTuple):
 def motions(answer: CaseAnswer) -> Iterator[_Motion]:
     """Motions along the free ways of the body, and of tools that are free."""
     contact, amplitudes = answer.condensation.contact, answer.solution.rigid_amplitudes
-    angles, arms = contact.rotations(amplitudes), contact.motion_arms
+    body = answer.condensation.body
+    amount = amounts(body, amplitudes, answer.state.displacement)
     for j, name in enumerate(contact.motion_names):
         if " of the tool " in name:
             continue  # reported with the tool
-        if angles is not None and arms is not None and np.isfinite(arms[j]):
-            yield _Motion("rotation", name, angles[j : j + 1])
-        else:
-            yield _Motion("motion", name, amplitudes[j : j + 1])
+        yield _Motion("rotation" if np.isfinite(body.seen.arms[j]) else "motion", name, amount[j : j + 1])
     moved = contact.tools.displacement(amplitudes)
     for name, place, free in zip(contact.tools.names, moved, contact.tools.free.reshape(-1, 3), strict=True):
         if free[:2].any():

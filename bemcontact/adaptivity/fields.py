@@ -83,14 +83,9 @@ class CaseAnswer:
 
         Nothing determines motions that no contact point sees, and none at all where nothing touches.
         """
-        body, whole = self.condensation.body, self.state.displacement
+        body = self.condensation.body
         free = (body.pinned_motions,) if self.pressure.any() else (body.pinned_motions, body.seen)
-        motions = np.concatenate([each.displacement(body.mesh)[body.mesh.elements] for each in free], axis=-1)
-        if not motions.shape[-1]:
-            return whole
-        root = np.sqrt(body.mesh.tributary)[..., None]
-        columns = (root[..., None] * motions).reshape(-1, motions.shape[-1])
-        return whole - motions @ np.linalg.lstsq(columns, (root * whole).ravel(), rcond=None)[0]
+        return body.without_motions(self.state.displacement, *free)
 
     @cached_property
     def largest_displacement(self) -> float:

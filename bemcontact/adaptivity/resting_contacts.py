@@ -147,10 +147,7 @@ def _ways_of_pairs(body: Body, case: CaseAnswer) -> Iterator[tuple[str, Way, flo
     contact = case.condensation.contact
     moved = motions_of_pairs(body, contact, case.solution.pressure, case.displacement)
     for name, motion in moved.items():
-        surface = _pairs(body.problem)[name]
-        step = motion.mean - surface.approach.step
-        step[abs(step) <= AS_A_WHOLE * motion.spread] = 0.0
-        step[_axes_of_symmetry(body, name)] = 0.0
+        surface, step = _pairs(body.problem)[name], motion_as_a_whole(body, name, motion)
         x, y = (surface.approach.step + step).tolist()
         turn = abs(float(motion.turns @ step))
         off = turn * float(np.hypot(*step)) / contact.scales.displacement / 2
@@ -228,6 +225,14 @@ def _going_on(body: Body, surfaces: Mapping[str, Curved]) -> Iterator[dict[str, 
         yield {name: left.pop(name) for name in group}
 
 
+def motion_as_a_whole(body: Body, contact: str, motion: "PairMotion") -> Array:
+    """Motion (2,) [L] of a contact of two elastic bodies beside the one that its pairs follow, without deformations."""
+    step = motion.mean - _pairs(body.problem)[contact].approach.step
+    step[abs(step) <= AS_A_WHOLE * motion.spread] = 0.0
+    step[_axes_of_symmetry(body, contact)] = 0.0
+    return step
+
+
 def _axes_of_symmetry(body: Body, contact: str) -> list[int]:
     """Axes 0 and 1 across which both bodies of a contact end at one line of symmetry."""
     names = [part.name for part in body.problem.parts]
@@ -286,7 +291,7 @@ def motions_of_pairs(
     gaps = np.array([touching[name].offset if name in touching else 0.0 for name in names])
     motion -= gaps[contact.zone, None] * contact.normals
     found = dict[str, PairMotion]()
-    for signs in moved_together(touching, body.problem.bonded_groups):
+    for signs in moved_together(touching, body.problem.bonded_groups, smooth=True):
         own, sign = [names.index(name) for name in signs], np.array([*signs.values()])
         signed = sign[:, None] * contact.weights_by_zone[own] * pressure
         force = abs(signed).sum()

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bemcontact.adaptivity.resting_contacts import motions_of_pairs
+from bemcontact.adaptivity.resting_contacts import motion_as_a_whole, motions_of_pairs
 from bemcontact.analysis.displaced_contact import load_after
 from bemcontact.analysis.moved_contact import (
     WITHHELD,
@@ -110,13 +110,17 @@ def _pairs_changed(first: MovedContact, body: Body) -> Judgement:
         if not isinstance(surface, BodySurface):
             continue
         motion = surface.approach.step - found.mean
-        part = found.change_of_peak(motion)
-        if part < first.noted:
+        part, of_ends = found.change_of_peak(motion), found.change_of_ends(motion_as_a_whole(body, zone, found))
+        if max(part, of_ends) < first.noted:
             continue
+        effects = (
+            f"the peak pressure may be off by about {100 * part:.2g} %" * (part >= first.noted),
+            f"contact may be elsewhere by up to {100 * of_ends:.2g} % of its length" * (of_ends >= first.noted),
+        )
         words = (
-            f"both sides of '{zone}' move by {first.way(motion)} beside the places for which points "
-            "opposite to each other were found: others are opposite then, and the peak pressure may be off by about "
-            f"{100 * part:.2g} %; draw the body near to where it will touch"
+            f"both sides of '{zone}' move by {first.way(motion)} beside the places for which points opposite to each "
+            f"other were found: others are opposite then, and {' and '.join(filter(None, effects))}; draw the body "
+            "near to where it will touch"
         )
         i = int(np.argmax(contact.lengths_by_zone[contact.zone_names.index(zone)] * pressure))
         misfit, notes = first.judged(words, withheld=part >= WITHHELD, i=i, depth=float(np.hypot(*motion)))

@@ -140,6 +140,8 @@ class Result(Recorded, Tabular):
     condensed problem, whose boundary was not looked at."""
     boundary: BoundaryState | None
     """Displacement and traction of the whole boundary; None for a condensed problem."""
+    rotations: Array | None
+    """Angle (k,) of each free motion, in radians and in the sense of its name; None if not known."""
     degrees_of_freedom: int | None
     """Two for each node of the mesh; None for a condensed problem."""
     notes: tuple[str, ...]
@@ -389,7 +391,7 @@ class Result(Recorded, Tabular):
             dof=self.degrees_of_freedom,
             notes=self.notes,
             **dict(contact_record(self.contact)),
-            **dict(solution_record(self.contact, self.solution)),
+            **dict(solution_record(self.contact, self.solution)) | {"rotations": self.rotations},
             **dict(footprint_record(self.footprint)),
             holds=self.holds,
             accuracy=self.accuracy,

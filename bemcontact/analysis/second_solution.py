@@ -186,18 +186,22 @@ class SecondSolution:
         return first.judged(words, withheld=not self.solved or abs(change) >= WITHHELD, i=i, depth=off)
 
     def places_changed(self) -> Iterator[str]:
-        """Note the contact whose place changes most, and that whose length does, by a noticeable part of its length."""
+        """Note the contact whose place changes most, and that whose length does, by a noticeable part of its length.
+
+        Ends that move do so by whole elements. The middle of the pressure and its spread do not.
+        """
         was = footprint(self.first.contact, self.first.solution).intervals
         is_now = footprint(self.contact, self.solution).intervals
         if not was or [item.run for item in was] != [item.run for item in is_now]:
             return
         before, after = (np.array([item.arc for item in intervals]).reshape(-1, 2) for intervals in (was, is_now))
-        lengths = np.ptp(before, axis=1), np.ptp(after, axis=1)
-        longer = np.maximum(*lengths)
-        shifts, grown = (
-            np.divide(change, longer, out=np.zeros(len(was)), where=longer > 0)
-            for change in (abs(np.mean(after - before, axis=1)), lengths[1] - lengths[0])
-        )
+        longer = np.maximum(np.ptp(before, axis=1), np.ptp(after, axis=1))
+        shifts, grown = np.zeros((2, len(was)))
+        for i in np.flatnonzero((before != after).any(axis=1) & (longer > 0)):
+            both = np.stack([before[i], after[i]])
+            middles, spreads = self._within(was[i].run, both[:, 0].min(), both[:, 1].max())
+            if spreads.all():
+                shifts[i], grown[i] = abs(middles[1] - middles[0]) / longer[i], spreads[1] / spreads[0] - 1
         if shifts[number := int(np.argmax(shifts))] >= self.first.noted:
             yield (
                 f"with the gaps after the motion of the body, contact of '{was[number].zone}' is elsewhere by "
@@ -210,6 +214,20 @@ class SecondSolution:
                 f"{'longer' if grown[number] > 0 else 'shorter'} by {100 * abs(grown[number]):.2g} %; error bars of "
                 "its length and ends do not include this"
             )
+
+    def _within(self, run: int, start: float, end: float) -> tuple[Array, Array]:
+        """Middle (2,) of the pressure of both solutions between two arc positions, and its root mean square (2,) [L].
+
+        The former is from the first position, the latter from the middle. Both are zero without pressure.
+        """
+        contact = self.first.contact
+        along = (contact.arc_position - start) % contact.run_length[contact.run]  # infinite before an open stretch
+        own = (contact.run == run) & (along <= end - start)
+        pressures = np.stack([self.first.solution.pressure, self.solution.pressure])[:, own]
+        force, along = contact.weights[own] * pressures, along[own]
+        total = np.maximum(force.sum(axis=1), np.finfo(float).tiny)
+        middles = force @ along / total
+        return middles, np.sqrt((force * (along - middles[:, None]) ** 2).sum(axis=1) / total)
 
     def _contacts(self) -> tuple[IntArray, BoolArray]:
         """Zone (c,) and points (c, n) of each unbroken contact of one of both solutions; of one alone, the zone.

@@ -15,6 +15,7 @@ from bemcontact.assessment.accuracy import NO_MESH, Accuracy
 from bemcontact.assessment.certificate import CertificateKind, certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
+from bemcontact.bem.body_motions import rotations
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.condense import Condensation, boundary_state
 from bemcontact.bem.surface_gaps import surface_gaps
@@ -322,6 +323,7 @@ def assessed(
             said += tuple(sides_of_one_body(condensation.body.problem))
         notes = (*contact.notes, *solution.notes, *said)
     gap, pressure = contact.initial_gap + solution.displacement, solution.pressure
+    amplitudes = solution.rigid_amplitudes
     by_point = weights is Weights.TRIBUTARY
     weighted = pressure * contact.weights if by_point else pressure @ contact.weight_matrix(weights)
     return Result(
@@ -335,6 +337,9 @@ def assessed(
         footprint=where,
         penetration=deepest,
         boundary=boundary,
+        rotations=contact.rotations(amplitudes)
+        if condensation is None or boundary is None
+        else rotations(condensation.body, amplitudes, boundary.displacement),
         degrees_of_freedom=None if condensation is None else condensation.body.mesh.degrees_of_freedom,
         notes=notes,
         seconds=watch.seconds,

@@ -151,6 +151,15 @@ class Body:
             return self.unseen
         return self.unseen.with_coefficients(np.concatenate([self.unseen.coefficients, self.spins.coefficients]))
 
+    def without_motions(self, displacement: Array, *free: FreeMotions) -> Array:
+        """Displacement (m, 3, 2) [L] of the boundary less its part in free motions, in least squares."""
+        motions = np.concatenate([each.displacement(self.mesh)[self.mesh.elements] for each in free], axis=-1)
+        if not motions.shape[-1]:
+            return displacement
+        root = np.sqrt(self.mesh.tributary)[..., None]
+        columns = (root[..., None] * motions).reshape(-1, motions.shape[-1])
+        return displacement - motions @ np.linalg.lstsq(columns, (root * displacement).ravel(), rcond=None)[0]
+
     @cached_property
     def pinned(self) -> Pinned:
         """These motions, with loads on the exact curves: the mesh does not affect their balance."""

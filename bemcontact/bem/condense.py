@@ -12,6 +12,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, IntArray, indices, magnitudes, scalar_products, successive
 from bemcontact.bem.body import Body
+from bemcontact.bem.body_motions import known_arms
 from bemcontact.bem.bonds import Bond, eliminate
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.congruence import congruent
@@ -228,7 +229,7 @@ def _condensation(body: Body, parts: tuple[CondensedPart, ...]) -> Condensation:
         units={"length": body.problem.units.length, "force": body.problem.units.force},
         notes=_notes(body, parts),
         motion_names=body.seen.describe(),
-        motion_arms=body.seen.arms,
+        motion_arms=known_arms(body),
         points=body.mesh.nodes[points.node],
         normals=points.normals,
         zone=points.zone,

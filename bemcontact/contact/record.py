@@ -106,10 +106,12 @@ class SolutionRecord(Record):
     """How the solver ended, which proves nothing of the solution."""
     rigid_amplitudes: Vector
     """Amplitude of each free rigid motion, those of the body first, then those of tools [L]: the displacement along a
-    translation; for a rotation, the displacement at a reference distance from its center; `rotations` has its angle."""
+    translation; for a rotation, the displacement at a reference distance from its center; `rotations` has its angle.
+    Where elastic bodies touch, they are those of one beside the other."""
     rotations: Vector | None
     """Angle of each free rigid motion, in radians and in the sense of its name, which is counterclockwise for a body or
-    a tool that turns alone, so that clockwise is negative; zero in a translation; null if unknown.
+    a tool that turns alone, so that clockwise is negative; zero in a translation; null if unknown. That of a body that
+    touches elastic ones is the mean rotation of its boundary.
     Displacements are small in linear elasticity: the angle is the displacement over the distance from the center."""
     undetermined: tuple[str, ...]
     """Names of the free rigid motions that contact leaves open; their amplitudes are chosen by a rule."""

@@ -7,8 +7,8 @@ import numpy as np
 
 from bemcontact.problems.bodies import SEPARATOR
 from bemcontact.problems.body_surface import BodySurface, BodyZone
-from bemcontact.problems.curves import Edge
-from bemcontact.problems.edge_places import STEEPEST, TIE
+from bemcontact.problems.curves import Edge, cross
+from bemcontact.problems.edge_places import CORNER, STEEPEST, TIE
 from bemcontact.problems.nearest_places import nearest_places, opposite_places
 from bemcontact.problems.validation import Point
 from bemcontact.problems.way import Way
@@ -74,11 +74,14 @@ def approached(zones: Mapping[str, BodyZone], bonded: Mapping[str, str] | None =
     return found
 
 
-def moved_together(surfaces: Mapping[str, BodySurface], bonded: Mapping[str, str]) -> Iterator[dict[str, float]]:
+def moved_together(
+    surfaces: Mapping[str, BodySurface], bonded: Mapping[str, str], *, smooth: bool = False
+) -> Iterator[dict[str, float]]:
     """Names of contacts between elastic bodies that are moved by one displacement, with its sign in each.
 
     What one contact states, several may state, each with some of the edges, whichever side is the first: so all that
-    meet on both bodies belong together. Bodies that bonds hold together are one: `bonded` has one of them for each.
+    meet on both bodies belong together, or only those that go on `smooth` there, as the faces of a V do not. Bodies
+    that bonds hold together are one: `bonded` has one of them for each.
     """
     left = dict.fromkeys(surfaces)
     while left:
@@ -88,7 +91,9 @@ def moved_together(surfaces: Mapping[str, BodySurface], bonded: Mapping[str, str
                 for sign in (1.0, -1.0):
                     mine, its = _sides(surface)[:: int(sign)]
                     pairs = (_sides(surfaces[name])[:: int(other)] for name, other in signs.items())
-                    meet = any(_meet(mine, one, bonded) and _meet(its, two, bonded) for one, two in pairs)
+                    meet = any(
+                        _meet(mine, one, bonded, smooth) and _meet(its, two, bonded, smooth) for one, two in pairs
+                    )
                     if more not in signs and meet:
                         signs[more] = sign
         for name in signs:
@@ -101,16 +106,24 @@ def _sides(surface: BodySurface) -> tuple[tuple[Edge, ...], tuple[Edge, ...]]:
     return surface.first, surface.edges
 
 
-def _meet(edges: Sequence[Edge], others: Sequence[Edge], bonded: Mapping[str, str]) -> bool:
+def _meet(edges: Sequence[Edge], others: Sequence[Edge], bonded: Mapping[str, str], smooth: bool) -> bool:
     """Whether edges and others have one in common, or go on in one another, on one body or on bonded ones."""
 
     def body(edge: Edge) -> str:
         name = edge.name.partition(SEPARATOR)[0]
         return bonded.get(name, name)
 
+    def goes_on(one: Edge, other: Edge) -> bool:
+        before, after = one.normals(np.ones(1))[0], other.normals(np.zeros(1))[0]
+        return bool(abs(cross(before, after)) <= CORNER and before @ after > 0) or not smooth
+
     return any(
         one.name == other.name
-        or (body(one) == body(other) and np.hypot(*np.subtract(one.end, other.start)) <= FLUSH * one.length)
+        or (
+            body(one) == body(other)
+            and np.hypot(*np.subtract(one.end, other.start)) <= FLUSH * one.length
+            and goes_on(one, other)
+        )
         for first, second in ((edges, others), (others, edges))
         for one in first
         for other in second

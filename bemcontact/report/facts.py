@@ -191,10 +191,10 @@ def _angle(record: JsonObject, motion: int) -> str:
     """Angle of a free rotation in its sense; nothing where the unit is not known."""
     if not record["intervals"]:
         return ": not determined"
-    if _stays(record, motion):
-        return ": 0"
     if record["rotations"] is None:
         return ""
+    if _stays(record, motion):
+        return ": 0"
     angle, name = abs(record["rotations"][motion]), record["motion_names"][motion]
     if name in record["undetermined"]:
         return f": not determined; chosen is {with_unit(number(angle), 'rad')}"
@@ -203,10 +203,9 @@ def _angle(record: JsonObject, motion: int) -> str:
 
 def _stays(record: JsonObject, motion: int) -> bool:
     """Whether a free motion is zero but for round-off."""
-    if not zero_if_negligible(record["rigid_amplitudes"][motion], record["scales"]["displacement"]):
-        return True
-    angles = record["rotations"]
-    return angles is not None and 0 < abs(angles[motion]) <= _least_angle(record)
+    angle = abs(record["rotations"][motion])
+    moved = zero_if_negligible(angle * coordinate_size(record), record["scales"]["displacement"])
+    return not moved or angle <= _least_angle(record)
 
 
 def _least_angle(record: JsonObject) -> float:

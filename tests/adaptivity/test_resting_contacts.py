@@ -1,11 +1,12 @@
 """Bodies that are drawn elsewhere than where they come to touch have the answer of those that are drawn there."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from known_answers import pin_in_hole
-from several_bodies import HELD, block, circle, elastic, problem
+from several_bodies import HELD, block, circle, elastic, polygon, problem
 
 import bemcontact
 from bemcontact.adaptivity import resting_contacts
@@ -419,3 +420,50 @@ def test_ends_of_contact_do_not_go_along_with_a_slide(monkeypatch: pytest.Monkey
     for end in ("start", "end"):
         allowed = own[end].bar + its[end].bar
         assert own[end].value == pytest.approx(its[end].value, rel=0, abs=allowed * length)
+
+
+def test_contacts_with_faces_that_meet_in_a_corner_rest_as_those_with_faces_apart():
+    """A roller slides down each face of a V, and the mean of both slides is neither of them.
+
+    Contact is far from the corner of the V: it is elsewhere by less than its error bars where a short edge cuts the
+    corner off. Ends were off by two hundredths of the length of contact.
+    """
+
+    def ends(**bottom):
+        seat = polygon(bottom=(-12, -5), east=(12, -5), up=(12, 6), right=(6, 6), **bottom, down=(-6, 6), west=(-12, 6))
+        rim = {"name": "rim", "kind": "arc", "center": [0, 4 * 2**0.5], "radius": 4, "angles": [90, 450]}
+        weight = {"gravity": {"density": 1, "acceleration": [0, -2.0]}}
+        bodies = {
+            "roller": elastic({"outer": [rim]}, modulus=5500.0, loads=weight),
+            "seat": elastic(seat, HELD, 5500.0),
+        }
+        result = bemcontact.solve(
+            problem(bodies, 0.01, **{side: ["roller/rim", f"seat/{side}"] for side in ("left", "right")})
+        )
+        bars = [result.accuracy.bar_of(end, side) for side in ("left", "right") for end in ("start", "end")]
+        lengths = np.repeat([result.accuracy.bar_of("length", side).value for side in ("left", "right")], 2)
+        return np.array([bar.at for bar in bars]), np.array([bar.bar for bar in bars]) * lengths
+
+    (whole, one), (cut, other) = ends(left=(0, 0)), ends(foot=(0.1, 0.1), left=(-0.1, 0.1))
+    assert (np.hypot(*(whole - cut).T) < one + other).all()
+
+
+def test_load_cases_note_how_far_contact_is_from_where_it_would_be_alone():
+    """Load cases share the pairs of bodies as drawn. Alone, cantilevers are paired where they have slid to.
+
+    Their contact is as long, so that no note says that it is shorter: ends move by whole elements, pressure does not.
+    """
+    problem = bemcontact.load(MODELS / "bodies" / "two_cantilevers.yaml")
+    pressed = {"conditions": {"upper/pressed": {"pressure": 0.1}}}
+    spec = problem.to_dict() | {"load_cases": {"heavy": pressed}}
+    del spec["bodies"]["upper"]["conditions"]["pressed"], spec["reference"]
+    result = bemcontact.solve_cases(bemcontact.problem(spec)).results["heavy"]
+    alone = bemcontact.solve(problem)
+    (here,), (there,) = result.intervals, alone.intervals
+    off = abs(np.mean(here.arc) - np.mean(there.arc)) / there.length
+    assert off > 0.01
+    assert here.length == pytest.approx(there.length, rel=2e-3)
+    told = [float(found[1]) for note in result.notes if (found := re.search(r"elsewhere by up to ([\d.e+-]+) %", note))]
+    assert len(told) == 1
+    assert off <= told[0] / 100 <= 3 * off
+    assert not any("shorter" in note for note in result.notes)

@@ -1108,3 +1108,43 @@ def test_a_wide_contact_on_a_flat_face_is_that_on_a_plane(kind):
         assert faces.forces[zone][1] == pytest.approx(planes.forces[zone][1], rel=1e-3)
         (one, other) = (result.accuracy.bar_of("peak", zone) for result in (faces, planes))
         assert one.value == pytest.approx(other.value, rel=one.bar + other.bar)
+
+
+@pytest.mark.parametrize("exchanged", [False, True])
+def test_a_body_moves_with_the_elastic_one_that_it_stays_on(exchanged):
+    """Under p = a + b x a block of height h bends exactly: its top sinks by a h / E' and turns by -b h / E'.
+
+    A stiff block moves with it. Contact is closed everywhere, so that no gap changes. A condensed problem does not
+    know how bodies turn.
+    """
+    height, slope, modulus = 4.0, 0.05, 10.0
+    load = {"top": {"pressure": {"constant": 1.0, "x": slope}}}
+    bodies = {
+        "stiff": elastic(block((-2, 2), (0, 3), (2,) * 4), load, 1e6 * modulus),
+        "base": elastic(block((-2, 2), (-height, 0), (2,) * 4), {"bottom": {"displacement": {"y": 0}}}, modulus),
+    }
+    pair = ["stiff/bottom", "base/top"]
+    result = solved(bodies, 0.01, seat=pair[::-1] if exchanged else pair)
+    (turning,) = (j for j, name in enumerate(result.contact.motion_names) if "rotation" in name)
+    assert "'stiff'" in result.contact.motion_names[turning]
+    assert result.rotations[turning] == pytest.approx(-slope * height / modulus * (1 - 0.3**2), rel=1e-5)
+    assert result.accuracy.bar_of("motion").value == pytest.approx(-height / modulus * (1 - 0.3**2), rel=1e-5)
+    told = dict(facts(result.to_dict(), result.units))
+    assert f"{-result.rotations[turning]:.3g}" in told["Rotation"]
+    assert result.contact.rotations(result.solution.rigid_amplitudes) is None
+
+
+def test_the_error_bar_of_a_rotation_is_of_the_angle_that_is_told():
+    """Blocks of equal width under an eccentric load, whose foot is held: a bar of 1 % against a mesh for 0.1 %."""
+    load = {"top": {"displacement": {"x": 0}, "traction": {"y": {"constant": -1.0, "x": -0.1}}}}
+    bodies = {
+        "stiff": elastic(block((-2, 2), (0, 3)), load, 1e5),
+        "base": elastic(block((-2, 2), (-4, 0)), HELD, 10.0),
+    }
+    rough, fine = (
+        bemcontact.solve(problem(bodies, asked, seat=["stiff/bottom", "base/top"])) for asked in (0.01, 1e-3)
+    )
+    bars = [result.accuracy.bar_of("rotation") for result in (rough, fine)]
+    for result, bar in zip((rough, fine), bars, strict=True):
+        assert bar.value == pytest.approx(result.rotations[result.contact.motion_names.index(bar.mover)], rel=1e-9)
+    assert abs(bars[0].value - bars[1].value) < sum(bar.bar * abs(bar.value) for bar in bars)

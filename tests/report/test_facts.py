@@ -126,7 +126,7 @@ def facts_of_forces(
     """Facts of one zone with these forces along y; its peak is infinite or 1."""
     total = sum(forces)
     record = {
-        "nodes": [[float(place), 0.0] for place in range(len(forces))], "zone": ["foot"] * len(forces),
+        "nodes": [[1.0 + place, 0.0] for place in range(len(forces))], "zone": ["foot"] * len(forces),
         "intervals": [{"zone": "foot", "start": [0.0, 0.0], "end": [9.0, 0.0], "arc": [0.0, 9.0]}] * any(forces),
         "run": [0] * len(forces), "arc_position": [float(place) for place in range(len(forces))],
         "tributary_lengths": forces, "pressure": [1.0] * len(forces), "normals": [[0.0, 1.0]] * len(forces),
@@ -161,8 +161,8 @@ def test_a_rotation_has_an_angle():
     assert rotations_of((1e-15, 0.05, 0.0)) == ["about (1, 2): 0", "about (3, 4): 0.05 rad"]
 
 
-def test_a_rotation_of_unknown_unit_has_no_amount_unless_it_is_zero():
-    assert rotations_of(None) == ["about (1, 2): 0", "about (3, 4)"]
+def test_a_rotation_that_is_not_known_has_no_amount():
+    assert rotations_of(None) == ["about (1, 2)", "about (3, 4)"]
 
 
 def rotations_of(rotations: tuple[float, ...] | None) -> list[str]:
