@@ -13,19 +13,9 @@ PACKAGE = TESTS.parent / "bemcontact"
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
 FOUNDATION = (
-    "errors", "checks", "arrays", "threads", "compilation", "serialization", "options", "version", "files", "views",
-)  # fmt: skip
-    "cached",
-    "errors",
-    "checks",
-    "arrays",
-    "threads",
-    "serialization",
-    "options",
-    "version",
-    "files",
+    "cached", "errors", "checks", "arrays", "threads", "compilation", "serialization", "options", "version", "files",
     "views",
-)
+)  # fmt: skip
 
 ROOMS = {
     "cached": (),
