@@ -5,7 +5,7 @@ from math import frexp, isfinite, ldexp, sqrt
 
 import numpy as np
 
-from bemcontact.arrays import Array, BoolArray
+from bemcontact.arrays import Array
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.factorizations import posv, row_lengths
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
@@ -80,12 +80,16 @@ def _balanced(A: Array, factors: Array) -> Array:
     sizes, n = np.abs(A), A.shape[1]
     sizes *= factors[n:, None]
     sizes *= factors[:n]
+    roots = np.empty(factors.size)
+    of_columns, of_rows, across = roots[:n], roots[n:], roots[n:, None]
     for _ in range(SWEEPS):
-        roots = np.sqrt(np.concatenate([np.maximum.reduce(sizes, 0), np.maximum.reduce(sizes, 1)]))
+        np.maximum.reduce(sizes, 0, None, of_columns)
+        np.maximum.reduce(sizes, 1, None, of_rows)
+        np.sqrt(roots, roots)
         if np.count_nonzero(roots) < roots.size:
             roots[roots == 0.0] = 1.0
-        sizes /= roots[n:, None]
-        sizes /= roots[:n]
+        sizes /= across
+        sizes /= of_columns
         factors = factors / roots
     return factors
 
@@ -103,8 +107,7 @@ def natural_factors(statement: Statement, bounds: Array) -> Array:
     """
     n = statement.c.size
     present, logarithms = _entries(statement)
-    smaller = _smaller_bounds(bounds)
-    bounds_present, of_bounds = _logarithms(smaller, smaller < np.inf)
+    bounds_present, of_bounds = _logarithms(_smaller_bounds(bounds))
     objective, rows, of_rows = present[: n + 1], present[n + 1 :], logarithms[n + 1 :]
     units = np.ones(present.shape[0])
     weights, ones = OF_OBJECTIVE * units[: n + 1], units[:n]
@@ -134,7 +137,7 @@ def _entries(statement: Statement) -> tuple[Array, Array]:
     # an entry of H or A counts as rounding if it is small beside the largest entries of its row and of its column
     n = statement.c.size
     sizes = np.abs(np.concatenate([statement.H, statement.c[None], statement.A]))
-    present, logarithms = _logarithms(sizes, sizes > 0.0)
+    present, logarithms = _logarithms(sizes)
     if logarithms.item(logarithms.argmax()) - logarithms.item(logarithms.argmin()) > WIDE:
         for matrix in (slice(n), slice(n + 1, None)):  # H by itself: its units are not those of A, and it is symmetric
             columns = np.maximum.reduce(sizes[matrix], axis=0, initial=0.0)
@@ -145,16 +148,19 @@ def _entries(statement: Statement) -> tuple[Array, Array]:
     return present, logarithms
 
 
-def _logarithms(sizes: Array, present: BoolArray) -> tuple[Array, Array]:
-    """One where there is a number, zero where there is none; and binary logarithms of the numbers."""
-    return present.astype(float), np.log2(sizes, out=np.zeros(sizes.shape), where=present)
+def _logarithms(sizes: Array) -> tuple[Array, Array]:
+    """One where there is a number, zero where there is a zero; and binary logarithms of the numbers."""
+    present = np.sign(sizes)
+    return present, np.log2(sizes + (1.0 - present))
 
 
 def _smaller_bounds(bounds: Array) -> Array:
-    """Size of the smaller nonzero bound of each constraint; infinite where there is none (n + m,)."""
+    """Size of the smaller nonzero bound of each constraint; zero where there is none (n + m,)."""
     sizes = np.abs(bounds)
     sizes[sizes == 0.0] = np.inf
-    return np.minimum(*sizes)
+    smaller = np.minimum(sizes[0], sizes[1])
+    smaller[smaller == np.inf] = 0.0
+    return smaller
 
 
 def _smaller_unit(bounds: Array, factor: float) -> float:
