@@ -83,8 +83,8 @@ def _balanced(A: Array, factors: Array) -> Array:
     roots = np.empty(factors.size)
     of_columns, of_rows, across = roots[:n], roots[n:], roots[n:, None]
     for _ in range(SWEEPS):
-        np.maximum.reduce(sizes, 0, None, of_columns)
-        np.maximum.reduce(sizes, 1, None, of_rows)
+        sizes.max(0, of_columns)
+        sizes.max(1, of_rows)
         np.sqrt(roots, roots)
         if np.count_nonzero(roots) < roots.size:
             roots[roots == 0.0] = 1.0

@@ -26,7 +26,12 @@ def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> t
     statement, n = progress.statement, progress.x.size
     if not is_violated(progress):
         return WorkingSet(statement, _and_equalities(statement, sides), sides != 0), None
-    working = put_on_equalities(progress, sides)
+    working = WorkingSet(statement, _and_equalities(statement, sides), complete=False)
+    near = working.onto(progress.x)
+    if progress.loses_digits(near):  # equalities are met one by one
+        working = WorkingSet(statement, sides, complete=False)
+        near = working.onto(progress.x)
+    progress.place(near)
     while (violated := dot(signs := _signs_of_others(progress, working), signs)) or progress.drifted:
         if not violated:
             progress.place(working.onto(progress.x))
@@ -53,21 +58,6 @@ def reach_feasibility(progress: SearchState, sides: Sides, fineness: float) -> t
         working.null_space = np.zeros((n, 0))  # a vertex needs no null space
         return working, None
     return WorkingSet(statement, _and_equalities(statement, working.sides), working.held), None
-
-
-def put_on_equalities(progress: SearchState, sides: Sides) -> WorkingSet:
-    """Move to the nearest point on a working set (n + m,) and all equalities, and return what is held there.
-
-    If the point would be so far away that it lost digits, the equalities are left to be met one by one.
-    """
-    statement = progress.statement
-    working = WorkingSet(statement, _and_equalities(statement, sides), complete=False)
-    near = working.onto(progress.x)
-    if progress.loses_digits(near):
-        working = WorkingSet(statement, sides, complete=False)
-        near = working.onto(progress.x)
-    progress.place(near)
-    return working
 
 
 def _and_equalities(statement: Statement, sides: Sides) -> Sides:

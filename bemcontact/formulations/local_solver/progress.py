@@ -49,6 +49,7 @@ class SearchState:
     ----------
     unit : scaled objective over that of the data
     long : length of a step on which the products that count as none may violate a constraint
+    farthest : distance from zero beyond which rounding is more than a small part of a tolerance
     x, values, gradient : the point (n,), [x; A x] (n + m,), and H x + c (n,)
     slack : (n + m,) tolerance of each constraint: relative to its smaller bound, and no less than the rounding of A x
     lowest, highest : (n + m,) bounds with their tolerances added
@@ -81,6 +82,7 @@ class SearchState:
         self._part, self.least_terms = 1.0 / self.x.size, max(statement.slope, 1e-3)
         self.tolerance, self.rounding = options.optimality_tolerance, 100.0 * EPS * statement.row_sum
         self.long = options.feasibility_tolerance / PARALLEL
+        self.farthest = options.feasibility_tolerance / (DRIFT * EPS)
         self._slack = options.feasibility_tolerance * np.maximum(1.0, statement.bound_size)
         self._least_slack, self._usual = options.feasibility_tolerance, None
         chosen = options.max_iterations
@@ -131,15 +133,11 @@ class SearchState:
     @property
     def drifted(self) -> bool:
         """Whether steps from far away may have left more than a small part of a tolerance since `place`."""
-        return self._steps and self._is_far(self.far)
+        return self._steps and self.far > self.farthest
 
     def loses_digits(self, x: Array) -> bool:
         """Whether rounding of this point or of one before it is more than a small part of a tolerance."""
-        return self._is_far(max(self.far, sqrt(dot(x, x))))
-
-    def _is_far(self, distance: float) -> bool:
-        """Whether rounding at this distance from zero is more than a small part of a tolerance."""
-        return DRIFT * EPS * distance > self.options.feasibility_tolerance
+        return max(self.far, sqrt(dot(x, x))) > self.farthest
 
     @property
     def sharp(self) -> Array:
@@ -267,10 +265,15 @@ class SearchState:
         the rest of each line.
         """
         log[0, first:] /= self.unit
-        numbers = zip(*log[:2].tolist(), *log[2:].astype(int).tolist(), strict=True)
-        for i, (value, step, added, dropped, working, nonpositive) in enumerate(numbers):
-            entered, left = None if added < 0 else added, None if dropped < 0 else dropped
-            self.write(1 if i < first else 2, value, step, entered, left, working, nonpositive)
+        (values, steps), whole = log[:2].tolist(), log[2:].astype(int).tolist()
+        entered, left = ([None if number < 0 else number for number in numbers] for numbers in whole[:2])
+        count, begin = len(values), len(self.lines)
+        phases, numbers = [1] * first + [2] * (count - first), range(begin + 1, begin + 1 + count)
+        self.lines += map(LogLine._make, zip(phases, numbers, values, steps, entered, left, *whole[2:], strict=True))
+        self.changes += 2 * count - entered.count(None) - left.count(None)
+        if self.options.log is not None:
+            for line in self.lines[begin:]:
+                self.options.log(line)
         self.stalled, self.by_numba = 0, True
         self.place(x)
 

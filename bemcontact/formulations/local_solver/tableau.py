@@ -21,7 +21,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.compilation import compiled
 from bemcontact.formulations.local_solver.factorizations import dot
-from bemcontact.formulations.local_solver.phase_one import is_violated, put_on_equalities
+from bemcontact.formulations.local_solver.phase_one import is_violated
 from bemcontact.formulations.local_solver.phase_two import ReducedHessian
 from bemcontact.formulations.local_solver.progress import PARALLEL, STALLED, SearchState
 from bemcontact.formulations.local_solver.ratio_test import FAINT
@@ -111,6 +111,7 @@ class Limits(NamedTuple):
     tolerance: float
     rounding: float
     long: float
+    farthest: float
     top: float
     iterations: int
 
@@ -430,10 +431,41 @@ def _hold_rows(p: FlatProgram, t: Tableau, wanted: IntArray) -> None:
                     _exchange(t, place, constraint, wanted[constraint])
 
 
+@compiled(inner=True)
+def _place_on_rows(p: FlatProgram, t: Tableau, farthest: float) -> bool:
+    """Move to the nearest point on the rows that are held; False if it is too far away to keep its digits."""
+    n, k, shift = p.c.size, 0, t.bent
+    free = np.empty((n, n))  # the temporary rows, made orthonormal
+    for j in range(n):
+        shift[j] = 0.0
+    for i in range(n):
+        constraint = t.owner[i]
+        if constraint >= n:
+            bounds = p.upper if t.sides[constraint] == 1 else p.lower
+            _add_multiple(bounds[constraint] - t.values[constraint], t.T[i], shift)
+    for i in range(n):
+        if t.owner[i] == TEMPORARY:
+            row = free[k]
+            for j in range(n):
+                row[j] = t.T[i, j]
+            for j in range(k):
+                _add_multiple(-_dot(row, free[j]), free[j], row)
+            _divide(row, math.sqrt(_dot(row, row)))
+            _add_multiple(-_dot(shift, row), row, shift)
+            k += 1
+    if not _dot(shift, shift) <= farthest * farthest:
+        return False
+    _add_multiple(1.0, shift, t.values[:n])
+    _times(p.A, t.values[:n], t.values[n:])
+    return True
+
+
 @compiled()
 def find_feasible_point(p: FlatProgram, t: Tableau, wanted: IntArray, limits: Limits) -> bool:
     """Phase one, from a tableau without conjugate rows and rows that are wanted: whether the point is feasible."""
     _hold_rows(p, t, wanted)
+    if not _place_on_rows(p, t, limits.farthest):
+        return False
     n, size = p.c.size, t.values.size
     signs, sum_gradient = t.work, t.gradient
     while True:
@@ -578,26 +610,24 @@ def regular_iterations(progress: SearchState, sides: Sides) -> Sides:
         (n + m,) the working set there, or the given one if there was no iteration.
     """
     statement, n = progress.statement, progress.x.size
-    violated = is_violated(progress)
-    if violated and np.count_nonzero(statement.equality[n:]):
-        sides = put_on_equalities(progress, sides).sides
     p = FlatProgram(
         H=statement.H, c=statement.c, A=statement.A, lower=statement.lower, upper=statement.upper,
         slack=progress.slack, equality=statement.equality,
     )  # fmt: skip
     limits = Limits(
         least_terms=progress.least_terms, tolerance=progress.tolerance, rounding=progress.rounding, long=progress.long,
-        top=largest(statement.absolute[0]), iterations=progress.limit - len(progress.lines),
+        farthest=progress.farthest, top=largest(statement.absolute[0]), iterations=progress.limit - len(progress.lines),
     )  # fmt: skip
     t, feasible = _start(progress, sides[:n]), True
-    if violated or np.count_nonzero(sides[n:]):
-        feasible = find_feasible_point(p, t, sides.astype(np.intp), limits)
-    first = int(t.counts[1])
+    wanted = np.where(statement.equality, EQUALITY, sides.astype(np.intp))
+    if np.count_nonzero(wanted[n:]) or is_violated(progress):
+        feasible = find_feasible_point(p, t, wanted, limits)
+    first = t.counts.item(1)
     if feasible:
         _make_conjugate(t, statement)
         t.measures[0], t.counts[2] = statement.objective(t.values[:n]), 0
         descend(p, t, limits)
-    count = int(t.counts[1])
+    count = t.counts.item(1)
     if count == 0 or not math.isfinite(dot(t.values, t.values)):
         return sides
     progress.take_over(t.values[:n], t.log[:, :count], first)
@@ -607,12 +637,12 @@ def regular_iterations(progress: SearchState, sides: Sides) -> Sides:
 def _start(progress: SearchState, bounds: Sides) -> Tableau:
     """A tableau of unit vectors: those of variables on their `bounds` (n,) move them, the others are temporary."""
     n, size = bounds.size, progress.values.size
-    sides, T = np.zeros(size, dtype=bounds.dtype), np.zeros((n, n))
-    sides[:n], T.reshape(-1)[:: n + 1] = bounds, 1.0
+    sides, T, owner, measures = np.zeros(size, dtype=bounds.dtype), np.zeros((n, n)), np.arange(n), np.zeros(3)
+    sides[:n], T.reshape(-1)[:: n + 1], owner[bounds == 0], measures[2] = bounds, 1.0, TEMPORARY, progress.far
     return Tableau(
         T=T,
-        owner=np.where(bounds != 0, np.arange(n), TEMPORARY),
-        signs=np.where(bounds == EQUALITY, 0.0, bounds),
+        owner=owner,
+        signs=(bounds * (bounds != EQUALITY)).astype(float),
         sides=sides,
         values=progress.values.copy(),
         along=np.empty(size),
@@ -623,7 +653,7 @@ def _start(progress: SearchState, bounds: Sides) -> Tableau:
         bent=np.empty(n),
         work=np.empty(size),
         counts=np.zeros(3, dtype=np.intp),
-        measures=np.array([0.0, 0.0, progress.far]),
+        measures=measures,
         log=np.empty((6, ROOM * size)),
     )
 
