@@ -442,7 +442,7 @@ def _place_on_rows(p: FlatProgram, t: Tableau, farthest: float) -> bool:
         constraint = t.owner[i]
         if constraint >= n:
             bounds = p.upper if t.sides[constraint] == 1 else p.lower
-            _add_multiple(bounds[constraint] - t.values[constraint], t.T[i], shift)
+            _add_multiple(float(bounds[constraint] - t.values[constraint]), t.T[i], shift)
     for i in range(n):
         if t.owner[i] == TEMPORARY:
             row = free[k]
