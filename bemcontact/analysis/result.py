@@ -141,7 +141,8 @@ class Result(Recorded, Tabular):
     boundary: BoundaryState | None
     """Displacement and traction of the whole boundary; None for a condensed problem."""
     rotations: Array | None
-    """Angle (k,) of each free motion, in radians and in the sense of its name; None if not known."""
+    """Angle (k,) of each free motion, in radians and in the sense of its name; zero in a translation; None if unknown.
+    That of a body that touches elastic ones is the mean rotation of its boundary."""
     degrees_of_freedom: int | None
     """Two for each node of the mesh; None for a condensed problem."""
     notes: tuple[str, ...]

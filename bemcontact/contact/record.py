@@ -111,7 +111,7 @@ class SolutionRecord(Record):
     rotations: Vector | None
     """Angle of each free rigid motion, in radians and in the sense of its name, which is counterclockwise for a body or
     a tool that turns alone, so that clockwise is negative; zero in a translation; null if unknown. That of a body that
-    touches elastic ones is the mean rotation of its boundary.
+    touches elastic ones is the mean rotation of its boundary; a comparison has it in its error bars only.
     Displacements are small in linear elasticity: the angle is the displacement over the distance from the center."""
     undetermined: tuple[str, ...]
     """Names of the free rigid motions that contact leaves open; their amplitudes are chosen by a rule."""

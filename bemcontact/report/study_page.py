@@ -104,7 +104,10 @@ def value_in_words(value: Any) -> str:
 
 def unit_of_output(column: str, units: Units) -> str:
     """Label of the unit of an output; empty for numbers and where a label is missing."""
-    attribute = DIMENSIONS.get(column.partition(".")[0], "")
+    quantity = column.partition(".")[0]
+    if quantity == "rotation":
+        return "rad"
+    attribute = DIMENSIONS.get(quantity, "")
     return getattr(units, attribute) if attribute else ""
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.checks.arguments import texts
+from bemcontact.contact.free_motions import angle_of_round_off
 from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, LargestStresses, NoPeak
 from bemcontact.errors import OptionError
 from bemcontact.problems.problem import Problem
@@ -26,6 +27,10 @@ OF_MOVERS = ("motion", "rotation")
 """Outputs of each tool and free motion, as ``motion.press``."""
 FREE = ("translation", "rotation")
 """First words of the free motions."""
+TURNS, NEARLY = "rotation ", "nearly a translation"
+"""First word of a free rotation, and what is in the name of one that is none but for its far center."""
+ROUND_OFF = 1e-9
+"""Rotation times coordinates, relative to displacements, that is round-off; also pressure, relative to the peak."""
 OF_STRESS = ("von_mises", "max_shear")
 """Outputs that a row has only if one of them was asked for: the search for the largest stresses takes its time."""
 ALL_OF = {"resultant": ("resultant_x", "resultant_y")}
@@ -33,6 +38,8 @@ ALL_OF = {"resultant": ("resultant_x", "resultant_y")}
 LENGTH, PRESSURE, LINE_FORCE, LINE_MOMENT, NUMBER = "length", "stress", "line_force", "line_moment", ""
 _FURTHER = re.compile(r"\[[1-9]\d*\]$")
 _CENTER = re.compile(r" about \([^()]*\)")  # the middle of a body depends on its mesh, which each member finds
+_COMMA = re.compile(r",(?![^()]*\))")  # but none in a direction such as (0, 1)
+_QUOTED = re.compile(r"'([^']*)'")
 DIMENSIONS = {
     "peak": PRESSURE, "peak_x": LENGTH, "peak_y": LENGTH, "resultant_x": LINE_FORCE, "resultant_y": LINE_FORCE,
     "moment": LINE_MOMENT, "displacement": LENGTH, "force": LINE_FORCE, "force_x": LINE_FORCE, "force_y": LINE_FORCE,
@@ -57,6 +64,7 @@ class Reading(Leaf):
 def readings(result: Result, *, stresses: bool = False) -> dict[str, Reading]:
     """All outputs of a result, by name; those of stress only if they are asked for."""
     found = dict([*_of_whole(result), *_of_zones(result), *_of_intervals(result), *_of_bars(result)])
+    found |= {name: item for name, item in _of_rotations(result) if name not in found}
     found |= dict(_of_stresses(result) if stresses else ())
     return {name: Reading(value=_finite(item.value), error=_finite(item.error)) for name, item in found.items()}
 
@@ -117,7 +125,25 @@ def _of_bars(result: Result) -> Iterator[tuple[str, Reading]]:
         if bar.quantity == "displacement":
             yield "displacement", _of_bar(bar)
         elif bar.quantity in (*OF_MOVERS, "intensity") and bar.value is not None:
-            yield f"{bar.quantity}.{bar.zone or _CENTER.sub('', bar.mover or '')}", _of_bar(bar)
+            yield f"{bar.quantity}.{bar.zone or _without_center(bar.mover or '')}", _of_bar(bar)
+
+
+def _of_rotations(result: Result) -> Iterator[tuple[str, Reading]]:
+    """Free rotations of bodies without their errors; zero where one is round-off, which has no error bar."""
+    contact, pressure, angles = result.contact, result.solution.pressure, result.rotations
+    if angles is None or not result.footprint.intervals:
+        return  # nothing determines them
+    least = angle_of_round_off(contact.points, contact.normals, pressure > ROUND_OFF * pressure.max())
+    least = max(least, ROUND_OFF * contact.scales.displacement / (float(np.abs(contact.points).max()) or 1.0))
+    for name, angle in zip(contact.motion_names, angles.tolist(), strict=True):
+        turns = name.startswith(TURNS) and " of the tool " not in name and NEARLY not in name
+        if turns and name not in result.solution.undetermined:
+            yield f"rotation.{_without_center(name)}", Reading(value=angle if abs(angle) > least else 0.0)
+
+
+def _without_center(mover: str) -> str:
+    """Name of a tool or a free motion without the center of a rotation."""
+    return _CENTER.sub("", mover)
 
 
 def _of_stresses(result: Result) -> Iterator[tuple[str, Reading]]:
@@ -155,7 +181,7 @@ def chosen(output: str | Sequence[str] | None, problem: Problem) -> tuple[str, .
     `OptionError` for an unknown output, zone or mover.
     """
     if isinstance(output, str):
-        output = [name.strip() for name in output.split(",")]
+        output = [name.strip() for name in _COMMA.split(output)]
     names = _usual(problem) if output is None else texts(output, "output")
     if not names:
         raise OptionError(f"no output is named; there are: {', '.join(_known())}")
@@ -165,9 +191,21 @@ def chosen(output: str | Sequence[str] | None, problem: Problem) -> tuple[str, .
             raise OptionError(unknown_word("output", name, _known()))
         if point and quantity in OF_ZONES:
             _ensure_of_zone(quantity, owner, problem)
-        elif point and owner not in problem.tools and not owner.startswith(FREE):
-            raise OptionError(f"output {name}: {unknown_word('tool', owner, problem.tools)}")
+        elif point and owner.startswith(FREE):
+            _ensure_of_bodies(name, owner, problem)
+        elif point and owner not in problem.tools:
+            unknown = unknown_word("tool", owner, problem.tools)
+            every = "" if unknown.endswith("?") else f"; {quantity} has a column for each tool and each free motion"
+            raise OptionError(f"output {name}: {unknown}{every}")
     return tuple(dict.fromkeys(part for name in names for part in ALL_OF.get(name, (name,))))
+
+
+def _ensure_of_bodies(name: str, mover: str, problem: Problem) -> None:
+    """Refuse an output of a free motion of bodies that the problem does not have."""
+    known = [part.name for part in problem.parts]
+    for body in _QUOTED.findall(mover) if problem.several else ():
+        if body not in (*known, *problem.tools):
+            raise OptionError(f"output {name}: {unknown_word('body', body, known)}")
 
 
 def _ensure_of_zone(quantity: str, owner: str, problem: Problem) -> None:

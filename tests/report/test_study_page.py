@@ -7,7 +7,14 @@ from page_reader import read
 from rich.console import Console
 
 from bemcontact.problems.units import Units
-from bemcontact.report.study_page import render, rows_in_short, study_shortfall, study_summary, study_verdicts
+from bemcontact.report.study_page import (
+    render,
+    rows_in_short,
+    study_shortfall,
+    study_summary,
+    study_verdicts,
+    unit_of_output,
+)
 from bemcontact.studies.axes import axes_of
 from bemcontact.studies.outputs import Reading
 from bemcontact.studies.rows import MemberRow, MemberStatus, failed_row
@@ -78,6 +85,12 @@ def test_numbers_that_do_not_hold_are_in_no_range():
         assert "Output of the 1 that holds" in ranges
         assert "100 ± 1 MPa" in ranges
         assert "900" not in ranges
+
+
+def test_a_rotation_is_in_radians_whatever_the_units_are():
+    for column in ("rotation", "rotation.press", "rotation.rotation counterclockwise of the body 'block'"):
+        assert unit_of_output(column, Units()) == "rad"
+    assert unit_of_output("motion.press", Units(length="mm")) == "mm"
 
 
 def test_the_page_has_each_number_with_its_error_and_no_markup_of_the_user():

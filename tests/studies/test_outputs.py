@@ -4,6 +4,8 @@ import re
 from pathlib import Path
 
 import pytest
+from several_bodies import block, elastic
+from several_bodies import problem as several
 
 import bemcontact
 from bemcontact.errors import ProblemError
@@ -88,6 +90,30 @@ def test_motions_of_tools_and_of_the_body_are_outputs():
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize("slope", [0.0, 0.05])
+def test_a_rotation_is_an_output_without_error_bars_and_where_it_is_zero(slope: float):
+    """A mesh whose errors are not estimated has no bars, and a rotation that is round-off has none on any mesh."""
+    load = {"top": {"pressure": {"constant": 1.0, "x": slope}}}
+    bodies = {
+        "stiff": elastic(block((-2, 2), (0, 3), (2,) * 4), load, 1e7),
+        "base": elastic(block((-2, 2), (-4, 0), (2,) * 4), {"bottom": {"displacement": {"y": 0}}}, 10.0),
+    }
+    result = bemcontact.solve(several(bodies, seat=["stiff/bottom", "base/top"]))
+    assert not result.accuracy.bars
+    name = "rotation.rotation counterclockwise of the body 'stiff'"
+    assert readings(result)[name].value == pytest.approx(-slope * 4 / 10 * (1 - 0.3**2), rel=1e-5, abs=0.0)
+    assert readings(result)[name].error is None
+
+
+def test_a_free_motion_of_bodies_can_be_chosen_with_the_comma_of_its_direction():
+    stack = bemcontact.load(MODELS / "bodies" / "stack_of_three.yaml")
+    body = next(part.name for part in stack.parts)
+    name = f"motion.translation along (0, 1) of the body '{body}'"
+    assert chosen(f"peak,{name}", stack) == ("peak", name)
+    with pytest.raises(ProblemError, match=f"unknown body '{body}x'; did you mean '{body}'"):
+        chosen(f"rotation.rotation counterclockwise of the body '{body}x'", stack)
+
+
 @pytest.mark.slow
 def test_each_output_of_a_result_can_be_chosen():
     for problem in (ZONES, TOOLS, PUNCH):
@@ -106,7 +132,7 @@ def test_each_output_of_a_result_can_be_chosen():
         (["end.wall[0]"], "unknown contact zone 'wall[0]'; did you mean 'wall'?"),
         (["end.wall[x]"], "unknown contact zone 'wall[x]'"),
         (["force.wall[1]"], "unknown contact zone 'wall[1]'"),  # it is the sum over all intervals
-        (["motion.press"], "unknown tool 'press'; there are none"),
+        (["motion.press"], "unknown tool 'press'; there are none; motion has a column for each tool and each free mo"),
         (["force.y"], "output force.y: write force_y, or force_y.drum"),
         ([], "no output is named"),
         (7, "list of texts"),
