@@ -3,8 +3,7 @@
 import sys
 from collections.abc import Callable
 from functools import lru_cache
-from importlib import import_module
-from typing import TypeVar
+from typing import Any, TypeVar
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -23,7 +22,9 @@ def compiled(*, inner: bool = False, reorder: bool = False) -> Callable[[Functio
     inner : only compiled functions call it, so that it is compiled in less time
     reorder : terms of a sum may be added in another order, so that several are added at once
     """
-    numba = import_module("numba")
+    import numba
+
+    njit: Any = numba.njit
     # no option changes a result by more than round-off: no check for division by zero, fused multiply-add
     options = {"nogil": True, "error_model": "numpy", "fastmath": {"contract", "reassoc"} if reorder else {"contract"}}
     if inner:
@@ -31,8 +32,8 @@ def compiled(*, inner: bool = False, reorder: bool = False) -> Callable[[Functio
 
     def decorate(function: Function) -> Function:
         try:
-            return numba.njit(function, cache=True, **options)
+            return njit(function, cache=True, **options)
         except RuntimeError:  # there is no directory to keep the machine code in
-            return numba.njit(function, **options)
+            return njit(function, **options)
 
     return decorate
