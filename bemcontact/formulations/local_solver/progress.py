@@ -79,14 +79,13 @@ class SearchState:
 
     def __post_init__(self) -> None:
         statement, options = self.statement, self.options
+        feasible, chosen = float(options.feasibility_tolerance), options.max_iterations
         self._part, self.least_terms = 1.0 / self.x.size, max(statement.slope, 1e-3)
-        self.tolerance, self.rounding = options.optimality_tolerance, 100.0 * EPS * statement.row_sum
-        self.long = options.feasibility_tolerance / PARALLEL
-        self.farthest = options.feasibility_tolerance / (DRIFT * EPS)
-        self._slack = options.feasibility_tolerance * np.maximum(1.0, statement.bound_size)
-        self._least_slack, self._usual = options.feasibility_tolerance, None
-        chosen = options.max_iterations
-        self.limit = 1000 + 20 * statement.lower.size if chosen is None else chosen
+        self.tolerance, self.rounding = float(options.optimality_tolerance), 100.0 * EPS * statement.row_sum
+        self.long, self.farthest = feasible / PARALLEL, feasible / (DRIFT * EPS)
+        self._slack = feasible * np.maximum(1.0, statement.bound_size)
+        self._least_slack, self._usual = feasible, None
+        self.limit = 1000 + 20 * statement.lower.size if chosen is None else int(chosen)
         self._traveled, self._passed, self._seen, self.far = np.zeros(self.x.size), [], None, 0.0
         self._measured, self._violation = None, self._traveled
         self.place(self.x)

@@ -14,6 +14,7 @@ an iteration is not regular: on a ray, on what may be rounding, on steps of leng
 """
 
 import math
+from heapq import heapify, heappop
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,15 +42,14 @@ NONE, IRREGULAR = _integers(-1, -2)
 CLEAR = 10.0
 """A multiplier of the wrong sign is released if it exceeds the zero of all by this factor."""
 ROUNDED, SURE = 100.0, 1e-8
-"""A curvature over the largest entry of H is zero up to the first times EPS n, and not doubtful above the second."""
+"""A curvature is zero up to the first times EPS n of its terms, and not doubtful above the second of the largest entry
+of H."""
 SMALL = 1e-7
 """A multiplier of the sum of violations is zero up to this part of its terms."""
 LARGE_PIVOT, PIVOT = 0.1, 1e-7
 """Least cosine between a row of T and the normal of a constraint that is held in its place at the start."""
 REACHED = 1e-13
 """A Newton step that is no longer than this part of the distance traveled is rounding."""
-WHOLE = 3
-"""Newton steps in sequence after which the reduced gradient is rounding."""
 ROOM = 4
 """Iterations over the number of constraints after which the rest is left to the phases."""
 
@@ -382,34 +382,29 @@ def _write(t: Tableau, value: float, step: float, added: int, owner: int, nonpos
 @compiled(inner=True)
 def _is_at_end(t: Tableau, limits: Limits) -> bool:
     """Whether the iterations are used up, or the steps have no length."""
-    return t.counts[1] >= min(limits.iterations, t.log.shape[1]) or t.counts[2] > STALLED
+    return t.counts[1] >= limits.iterations or t.counts[2] > STALLED
 
 
 @compiled(inner=True)
 def _breakpoint(p: FlatProgram, t: Tableau, signs: Array, length: float) -> tuple[int, int, float]:
     """As `phase_one._breakpoint`: the constraint, its side, and the step; NONE if there is none."""
-    fall, last = -(1.0 - 1e-12) * _dot(signs, t.along), -math.inf
-    while True:
-        step, speed, fastest, at, far = math.inf, 0.0, 0.0, NONE, False
-        for i in range(signs.size):
-            towards = -signs[i] * t.along[i]
-            if towards <= 1e-10 * length:
-                continue
-            first, second = (p.lower[i], p.upper[i]) if signs[i] < 0.0 else (p.upper[i], p.lower[i])
-            for bound in range(2):
-                time = abs((second if bound else first) - t.values[i]) / towards
-                if last < time < step:
-                    step, speed, fastest = time, 0.0, 0.0
-                if time == step:
-                    speed += towards
-                    if towards > fastest:
-                        fastest, at, far = towards, i, bound == 1
-        if step == math.inf:
-            return NONE, 0, 0.0
-        fall, last = fall - speed, step
-        if fall <= 0.0:
-            side = _side(p, t, at)
-            return at, side if far or side == EQUALITY else -side, step
+    ahead = []  # breakpoints: time, and what the slope gains there
+    for i in range(signs.size):
+        towards = -signs[i] * t.along[i]
+        if towards > 1e-10 * length:
+            bounds = (p.lower[i], p.upper[i]) if signs[i] < 0.0 else (p.upper[i], p.lower[i])
+            for far in range(2):
+                ahead.append((abs(bounds[far] - t.values[i]) / towards, -towards, i, far))
+    heapify(ahead)
+    fall, step, at, side = -(1.0 - 1e-12) * _dot(signs, t.along), -math.inf, NONE, 0
+    while len(ahead) > 0 and fall > 0.0:
+        time, change, i, far = heappop(ahead)
+        if time > step:  # the fastest of those at one time comes first
+            step, at, side = time, i, _side(p, t, i)
+            if far == 0 and side != EQUALITY:
+                side = -side
+        fall += change
+    return (at, side, step) if fall <= 0.0 and step < math.inf else (NONE, 0, 0.0)
 
 
 @compiled(inner=True)
@@ -536,17 +531,28 @@ def _newton(p: FlatProgram, t: Tableau) -> float:
     return math.sqrt(_dot(t.along[:n], t.along[:n]))
 
 
+@compiled(inner=True)
+def _terms(p: FlatProgram, d: Array) -> float:
+    """Sum of the sizes of the terms of dᵀHd."""
+    terms = 0.0
+    for i in range(d.size):
+        if d[i] != 0.0:
+            for j in range(d.size):
+                terms += abs(d[i] * p.H[i, j] * d[j])
+    return terms
+
+
 @compiled()
 def descend(p: FlatProgram, t: Tableau, limits: Limits) -> None:
     """Phase two, until no multiplier is clearly wrong, or an iteration is not regular."""
-    n, whole, settled = p.c.size, 0, False
+    n, settled = p.c.size, False
     while not _is_at_end(t, limits):
         _look(p, t, limits)
         k, zero = t.counts[0], t.measures[1]
         for i in range(t.passed.size):
             t.passed[i] = t.sides[i] != 0
         square = _dot(t.slopes[:k], t.slopes[:k])
-        if not settled and whole < WHOLE and square * limits.top * n > (0.1 * zero) ** 2:
+        if not settled and square * limits.top * n > (0.1 * zero) ** 2:
             length = _newton(p, t)
             if length <= REACHED * max(1.0, t.measures[2]):
                 settled = True
@@ -555,9 +561,7 @@ def descend(p: FlatProgram, t: Tableau, limits: Limits) -> None:
             if constraint == IRREGULAR:
                 return
             if constraint == NONE:
-                step, whole, settled = 1.0, whole + 1, True
-            else:
-                whole = 0
+                step, settled = 1.0, True
             _move(t, step, length)
             if constraint != NONE:
                 _enter(p, t, constraint, _side(p, t, constraint))
@@ -571,7 +575,7 @@ def descend(p: FlatProgram, t: Tableau, limits: Limits) -> None:
         _combine(row, p.H, t.bent)
         curvature, sure = _dot(row, t.bent), limits.top * _dot(row, row)
         if abs(curvature) <= SURE * sure:
-            if abs(curvature) > ROUNDED * EPS * n * sure:
+            if abs(curvature) > ROUNDED * EPS * n * _terms(p, row):
                 return
             curvature = 0.0
         slope, owner = abs(t.slopes[place]), t.owner[place]
@@ -584,7 +588,7 @@ def descend(p: FlatProgram, t: Tableau, limits: Limits) -> None:
             return
         step = end if constraint == NONE else step
         _move(t, step, length)
-        whole, settled = 0, constraint in (NONE, owner)
+        settled = constraint in (NONE, owner)
         if constraint == NONE:
             _join(t, place, curvature)
         elif constraint == owner:
@@ -614,12 +618,14 @@ def regular_iterations(progress: SearchState, sides: Sides) -> Sides:
         H=statement.H, c=statement.c, A=statement.A, lower=statement.lower, upper=statement.upper,
         slack=progress.slack, equality=statement.equality,
     )  # fmt: skip
+    room = ROOM * progress.values.size
     limits = Limits(
         least_terms=progress.least_terms, tolerance=progress.tolerance, rounding=progress.rounding, long=progress.long,
-        farthest=progress.farthest, top=largest(statement.absolute[0]), iterations=progress.limit - len(progress.lines),
+        farthest=progress.farthest, top=largest(statement.absolute[0]),
+        iterations=min(progress.limit - len(progress.lines), room),  # the limit may be too large for machine code
     )  # fmt: skip
-    t, feasible = _start(progress, sides[:n]), True
     wanted = np.where(statement.equality, EQUALITY, sides.astype(np.intp))
+    t, feasible = _start(progress, wanted[:n], room), True
     if np.count_nonzero(wanted[n:]) or is_violated(progress):
         feasible = find_feasible_point(p, t, wanted, limits)
     first = t.counts.item(1)
@@ -634,10 +640,10 @@ def regular_iterations(progress: SearchState, sides: Sides) -> Sides:
     return t.sides
 
 
-def _start(progress: SearchState, bounds: Sides) -> Tableau:
+def _start(progress: SearchState, bounds: IntArray, room: int) -> Tableau:
     """A tableau of unit vectors: those of variables on their `bounds` (n,) move them, the others are temporary."""
     n, size = bounds.size, progress.values.size
-    sides, T, owner, measures = np.zeros(size, dtype=bounds.dtype), np.zeros((n, n)), np.arange(n), np.zeros(3)
+    sides, T, owner, measures = np.zeros(size, dtype=np.int8), np.zeros((n, n)), np.arange(n), np.zeros(3)
     sides[:n], T.reshape(-1)[:: n + 1], owner[bounds == 0], measures[2] = bounds, 1.0, TEMPORARY, progress.far
     return Tableau(
         T=T,
@@ -654,7 +660,7 @@ def _start(progress: SearchState, bounds: Sides) -> Tableau:
         work=np.empty(size),
         counts=np.zeros(3, dtype=np.intp),
         measures=measures,
-        log=np.empty((6, ROOM * size)),
+        log=np.empty((6, room)),
     )
 
 

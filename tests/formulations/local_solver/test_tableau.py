@@ -6,6 +6,7 @@ In a fresh tree numba compiles for about 15 s, so that tests of compiled code ar
 import importlib.util
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -165,6 +166,66 @@ def test_the_limit_and_the_log_are_those_of_the_options():
 )
 def test_programs_without_a_minimizer_are_named(H, c, data, status):
     assert minimize_qp(H, c, *data, options=BY_CODE).status is status
+
+
+@pytest.mark.usefixtures("tableau")
+@pytest.mark.parametrize("seed", range(8))
+def test_phase_one_goes_on_while_the_sum_of_violations_falls(seed):
+    """One variable: it ends where the sum over all rows is least, at a bound of one. Whole numbers have ties."""
+    rng = np.random.default_rng(seed)
+    A, low = rng.integers(1, 4, (40, 1)) * rng.choice([-1.0, 1.0], (40, 1)), rng.integers(-30, 31, 40).astype(float)
+    high = low + rng.integers(1, 9, 40)
+
+    def violation(x):
+        return np.maximum(np.maximum(low - A[:, 0] * x, A[:, 0] * x - high), 0.0).sum()
+
+    result = minimize_qp([[0.0]], [0.0], A, low, high, x0=[50.0], options=QPOptions(by_numba=True, scale=False))
+    assert result.by_numba
+    assert result.status is QPStatus.INFEASIBLE
+    bounds = np.concatenate([low, high]) / np.tile(A[:, 0], 2)
+    assert violation(result.x[0]) == pytest.approx(min(map(violation, bounds)), rel=1e-12)
+
+
+@pytest.mark.slow
+def test_a_step_through_many_bounds_takes_no_longer_than_that_of_phase_one():
+    """All of 5000 rows are violated at first, and a step passes up to half of them."""
+    rng = np.random.default_rng(0)
+    A = rng.standard_normal((5000, 20))
+    middle = A @ np.full(20, 3.0)
+    data = np.eye(20), np.ones(20), A, middle - 1.0, middle + 1.0
+    minimize_qp(np.eye(2), np.ones(2), options=BY_CODE)  # which compiles it
+    times = []
+    for options in (BY_CODE, BY_PHASES):
+        begin = time.process_time()
+        assert minimize_qp(*data, options=options).status is QPStatus.LOCAL_MINIMIZER
+        times.append(time.process_time() - begin)
+    assert times[0] < 7.0 * times[1]
+
+
+@pytest.mark.usefixtures("tableau")
+def test_a_small_curvature_without_rounding_is_not_zero():
+    """1e-10 x falls against 2e-14 x²: the least value is -1.25e-7 at x = 2500, and no iteration goes below it."""
+    H, c, options = np.diag([1.0, 4e-14]), [0.0, -1e-10], QPOptions(by_numba=True, scale=False)
+    result = minimize_qp(H, c, bl=[-1.0, 0.0], bu=[1.0, 1e5], options=options)
+    assert result.x[1] == pytest.approx(2500.0, rel=1e-9)
+    assert min(line.value for line in result.log) == pytest.approx(-1.25e-7, rel=1e-9)
+
+
+@pytest.mark.usefixtures("tableau")
+def test_fixed_variables_are_held_whatever_the_working_set():
+    ones = np.ones(5)
+    result = minimize_qp(np.zeros((5, 5)), ones, bl=ones, bu=ones, working_set=np.zeros(5, dtype=int), options=BY_CODE)
+    assert result.status is QPStatus.LOCAL_MINIMIZER
+    assert result.iterations == 0
+
+
+@pytest.mark.usefixtures("tableau")
+@pytest.mark.parametrize("given", [{"max_iterations": 10**30}, {"feasibility_tolerance": np.longdouble("1e-9")}])
+def test_numbers_of_options_may_be_of_any_kind_and_size(given):
+    data = program(1, convex=True, feasible=False)
+    usual, result = (minimize_qp(*data, options=QPOptions(by_numba=True, **more)) for more in ({}, given))
+    assert result.by_numba
+    assert abs(result.x - usual.x).max() < 1e-9
 
 
 def test_machine_code_is_used_where_numba_is_imported_and_the_program_is_small(monkeypatch):
