@@ -611,7 +611,7 @@ def regular_iterations(progress: SearchState, sides: Sides) -> Sides:
     Returns
     -------
     Sides
-        (n + m,) the working set there, or the given one if there was no iteration.
+        (n + m,) the working set there, or the given one if no iteration has moved the point.
     """
     statement, n = progress.statement, progress.x.size
     p = FlatProgram(
@@ -634,7 +634,8 @@ def regular_iterations(progress: SearchState, sides: Sides) -> Sides:
         t.measures[0], t.counts[2] = statement.objective(t.values[:n]), 0
         descend(p, t, limits)
     count = t.counts.item(1)
-    if count == 0 or not math.isfinite(dot(t.values, t.values)):
+    moved = t.measures.item(2) > progress.far  # an answer at a point with many active constraints stays as it is
+    if not moved or not math.isfinite(dot(t.values, t.values)):
         return sides
     progress.take_over(t.values[:n], t.log[:, :count], first)
     return t.sides
