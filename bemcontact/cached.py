@@ -1,4 +1,7 @@
-"""Properties that are computed once, when they are first asked for."""
+"""Properties that are computed once, when they are first asked for.
+
+Classes of pydantic need the one of the standard library: they know it by its module.
+"""
 
 import functools
 from typing import TYPE_CHECKING, Any

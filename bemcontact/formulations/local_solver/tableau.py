@@ -11,6 +11,9 @@ T by a matrix of rank one to three. The rules of pricing and of the ratio test a
 
 Nothing is claimed here. Both phases begin where this ends, with factors of their own from the data. It ends early where
 an iteration is not regular: on a ray, on what may be rounding, on steps of length zero without end.
+
+Machine code that was kept knows the functions of this file, and the constants of others: a change of those needs a
+change here. So all of it is in one file.
 """
 
 import math
