@@ -116,9 +116,17 @@ def new_page(width: float, height: float) -> Figure:
 
 
 class PageLayout(ConstrainedLayoutEngine):
-    """Layout of a page of this program. One that is settled is not laid out again for its file."""
+    """Layout of a page of this program. One that is settled is not laid out again for its file.
+
+    It takes two passes: equal scales change the place of a plan, and with it how high its title stands.
+    """
 
     settled = False
+
+    def execute(self, fig: Figure) -> None:
+        """Lay out the page."""
+        for _ in range(2):
+            super().execute(fig)
 
 
 def plain(text: str) -> str:

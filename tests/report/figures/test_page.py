@@ -14,7 +14,6 @@ from drawings import beam_over_a_circle, block_in_a_corner, seal_in_a_groove
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import ScalarFormatter
 
 import bemcontact
@@ -23,7 +22,16 @@ from bemcontact.bem import mesh
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.problems import Problem
 from bemcontact.report import figures
-from bemcontact.report.figures.page import RoundTicks, distance_label, legend_below, name_axis, new_page, pieces_of
+from bemcontact.report.figures.page import (
+    PageLayout,
+    RoundTicks,
+    distance_label,
+    legend_below,
+    name_axis,
+    new_page,
+    pieces_of,
+    settle,
+)
 
 
 @settings(deadline=None)
@@ -106,7 +114,7 @@ def test_saved_in_the_format_of_the_ending(problem: Problem, tmp_path: Path, end
 def test_a_page_is_laid_out_once_and_names_stay_beside_what_they_name(problem: Problem, tmp_path: Path, monkeypatch):
     """Settled for its names, its file has the same axes: one layout, and one drawing that is not thrown away."""
     calls = list[str]()
-    for owner, name in ((ConstrainedLayoutEngine, "execute"), (Figure, "draw")):
+    for owner, name in ((PageLayout, "execute"), (Figure, "draw")):
         whole = getattr(owner, name)
 
         def counted(self, *arguments, name=name, whole=whole):
@@ -186,3 +194,16 @@ def test_tick_labels_do_not_overlap(low: float, high: float, width: float):
     boxes = [label.get_window_extent() for label in shown]
     assert len(shown) >= 2
     assert all(a.x1 < b.x0 for a, b in pairwise(boxes))
+
+
+def test_a_title_of_several_lines_above_a_plan_does_not_reach_that_of_the_page():
+    """Equal scales move the plan beside its color bar after its place is known, and its title with it."""
+    figure = new_page(14, 5)
+    plan, other = figure.subplots(1, 2)
+    for axes in (plan, other):
+        axes.set(aspect="equal", xlim=(0, 10.3), ylim=(0, 7))
+    figure.colorbar(plan.imshow(np.eye(2), extent=(0, 9, 0, 7)), ax=plan, shrink=0.8)
+    title = plan.set_title("one\ntwo\nthree", loc="left")
+    page = figure.suptitle("title of the page")
+    settle(plan)
+    assert title.get_window_extent().y1 <= page.get_window_extent().y0
