@@ -1,7 +1,9 @@
 """Equilibration: the program is scaled so that the units of the data have no influence on the answer."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import frexp, isfinite, ldexp, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -39,17 +41,27 @@ def unequilibrated(statement: Statement) -> tuple[Statement, Scales]:
     return statement, Scales(variables=np.ones(n), rows=np.ones(m), objective=1.0)
 
 
-@np.errstate(over="ignore", divide="ignore", invalid="ignore")  # what overflows is refused at the end
-def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
-    """Scale by natural factors, then columns and rows of A to size one, and the largest entry of H and c to one.
+class ScaledData(NamedTuple):
+    """Data of a scaled `Statement`, with the factors of variables (n,), of rows (m,) and of the objective."""
 
-    If all bounds are smaller than one, the unit of all variables is made smaller, as absolute tolerances assume.
-    All factors are powers of two, so that no digit of the data changes. `ProblemError` if entries are so far apart that
-    no factors bring them together.
-    """
-    n, bounds = statement.c.size, np.array([statement.lower, statement.upper])
-    present = np.count_nonzero(np.isfinite(bounds))
-    factors, A = natural_factors(statement, bounds), statement.A
+    H: Array
+    c: Array
+    A: Array
+    bounds: Array
+    variables: Array
+    rows: Array
+    objective: float
+    representable: bool
+
+
+Scaling = Callable[[Array, Array, Array, Array], ScaledData]
+"""A function with the parameters of `scaled_data`."""
+
+
+def scaled_data(H: Array, c: Array, A: Array, bounds: Array) -> ScaledData:
+    """Scale as `equilibrate` says, from H, c, A and bounds (2, n + m); data may come out that no number represents."""
+    n, present = c.size, np.count_nonzero(np.isfinite(bounds))
+    factors = natural_factors(H, c, A, bounds)
     if A.size:
         factors = _balanced(A, factors)
     D, E = _power_of_two(factors[:n]), factors[n:]
@@ -57,22 +69,34 @@ def equilibrate(statement: Statement) -> tuple[Statement, Scales]:
         E = _power_of_two(E / row_lengths(E[:, None] * A * D))
         A = E[:, None] * A * D
     of_bounds = np.concatenate([1.0 / D, E])
-    bounds *= of_bounds
+    bounds = of_bounds * bounds
     greatest, least = of_bounds.item(of_bounds.argmax()), of_bounds.item(of_bounds.argmin())
     smaller = _smaller_unit(bounds, greatest)
     if smaller < 1.0:
         D, E, bounds = smaller * D, E / smaller, bounds / smaller
-    H, c = D[:, None] * statement.H * D, D * statement.c
+    H, c = D[:, None] * H * D, D * c
     sizes = largest(H), largest(c), largest(A)
     unit = _near_power(1.0 / (max(sizes[:2]) or 1.0))
-    H *= unit
-    c *= unit
-    if not isfinite(sum(sizes) + greatest) or least == 0.0 or np.count_nonzero(np.isfinite(bounds)) < present:
+    representable = isfinite(sum(sizes) + greatest) and least > 0.0 and np.count_nonzero(np.isfinite(bounds)) == present
+    return ScaledData(H * unit, c * unit, A, bounds, D, E, unit, representable)
+
+
+@np.errstate(over="ignore", divide="ignore", invalid="ignore")  # what overflows is refused at the end
+def equilibrate(statement: Statement, scaling: Scaling = scaled_data) -> tuple[Statement, Scales]:
+    """Scale by natural factors, then columns and rows of A to size one, and the largest entry of H and c to one.
+
+    If all bounds are smaller than one, the unit of all variables is made smaller, as absolute tolerances assume.
+    All factors are powers of two, so that no digit of the data changes. `ProblemError` if entries are so far apart that
+    no factors bring them together.
+    """
+    data = scaling(statement.H, statement.c, statement.A, np.array([statement.lower, statement.upper]))
+    if not data.representable:
         raise ProblemError(
             "the sizes of entries and bounds are too far apart for double precision; choose other units, or write 0 "
             "for what is round-off"
         )
-    return Statement(H=H, c=c, A=A, lower=bounds[0], upper=bounds[1]), Scales(variables=D, rows=E, objective=unit)
+    scaled = Statement(H=data.H, c=data.c, A=data.A, lower=data.bounds[0], upper=data.bounds[1])
+    return scaled, Scales(variables=data.variables, rows=data.rows, objective=data.objective)
 
 
 def _balanced(A: Array, factors: Array) -> Array:
@@ -94,7 +118,7 @@ def _balanced(A: Array, factors: Array) -> Array:
     return factors
 
 
-def natural_factors(statement: Statement, bounds: Array) -> Array:
+def natural_factors(H: Array, c: Array, A: Array, bounds: Array) -> Array:
     """Factors of variables and rows (n + m,) that minimize the sum of squares of the logarithms of all scaled entries.
 
     The method is that of Curtis and Reid, J. Inst. Math. Appl. 10 (1972) 118-124. The entries of A have the largest
@@ -105,8 +129,8 @@ def natural_factors(statement: Statement, bounds: Array) -> Array:
     e_i + d_j + log|A_ij|, o + d_i + d_j + log|H_ij|, o + d_j + log|c_j|, log|b_j| - d_j and e_i + log|b_i|, b the
     bounds. The normal equations are diagonal in e. So e and o are eliminated, and d is left.
     """
-    n = statement.c.size
-    present, logarithms = _entries(statement)
+    n = c.size
+    present, logarithms = _entries(H, c, A)
     bounds_present, of_bounds = _logarithms(_smaller_bounds(bounds))
     objective, rows, of_rows = present[: n + 1], present[n + 1 :], logarithms[n + 1 :]
     units = np.ones(present.shape[0])
@@ -132,11 +156,11 @@ def natural_factors(statement: Statement, bounds: Array) -> Array:
     return np.exp2(np.concatenate([d, e]))
 
 
-def _entries(statement: Statement) -> tuple[Array, Array]:
+def _entries(H: Array, c: Array, A: Array) -> tuple[Array, Array]:
     """Which entries of [H; c; A] are present (n + 1 + m, n), and their binary logarithms; zeros elsewhere."""
     # an entry of H or A counts as rounding if it is small beside the largest entries of its row and of its column
-    n = statement.c.size
-    sizes = np.abs(np.concatenate([statement.H, statement.c[None], statement.A]))
+    n = c.size
+    sizes = np.abs(np.concatenate([H, c[None], A]))
     present, logarithms = _logarithms(sizes)
     if logarithms.item(logarithms.argmax()) - logarithms.item(logarithms.argmin()) > WIDE:
         for matrix in (slice(n), slice(n + 1, None)):  # H by itself: its units are not those of A, and it is symmetric

@@ -13,7 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 from bemcontact import compilation
 from bemcontact.arrays import Array, BoolArray, whole_array
 from bemcontact.errors import ProblemError
-from bemcontact.formulations.local_solver.equilibration import Scales, equilibrate, unequilibrated
+from bemcontact.formulations.local_solver.equilibration import (
+    Scales,
+    Scaling,
+    equilibrate,
+    scaled_data,
+    unequilibrated,
+)
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 from bemcontact.formulations.local_solver.infeasibility import proof_of_infeasibility
 from bemcontact.formulations.local_solver.optimality import FirstOrder, cleaned_ray, examine, first_order
@@ -35,6 +41,9 @@ from bemcontact.threads import one_thread
 
 Iterations = Callable[[SearchState, Sides], Sides]
 """A function with the parameters of `tableau.regular_iterations`."""
+MachineCode = tuple[Scaling, Iterations | None]
+"""What machine code can do: the scaling, and the regular iterations of both phases."""
+IN_NUMPY: MachineCode = scaled_data, None
 DEFAULTS = QPOptions()
 RENEWALS = 3
 """Largest number of restarts from a stationary point that is doubtful, or which the run has reached from far away."""
@@ -296,30 +305,33 @@ def minimize_qp(
     n = stated.c.size
     start = np.zeros(n) if x0 is None else numbers("x0", x0, n)
     start = np.minimum(np.maximum(start, stated.lower[:n]), stated.upper[:n])
-    scaled, scales = equilibrate(stated) if options.scale else unequilibrated(stated)
+    scaling, regular_iterations = _machine_code(options, n)
+    scaled, scales = equilibrate(stated, scaling) if options.scale else unequilibrated(stated)
     progress = SearchState(statement=scaled, options=options, unit=scales.objective, x=start / scales.variables)
     sides = progress.statement.sides_reached(progress.values, progress.slack)
     if working_set is not None:
         sides = np.where(_wanted(working_set, sides.size), sides, 0).astype(np.int8)
     elif x0 is not None:
         sides = supporting(progress, sides)
-    finding, reduced_start = run_phases(progress, sides, _machine_code(options, n))
+    finding, reduced_start = run_phases(progress, sides, regular_iterations)
     return _result(stated, scales, progress, finding, reduced_start)
 
 
-def _machine_code(options: QPOptions, n: int) -> Iterations | None:
-    """`regular_iterations`, or None without numba, where it is not wanted, and where the program is large."""
+def _machine_code(options: QPOptions, n: int) -> MachineCode:
+    """`IN_NUMPY` without numba, where machine code is not wanted, and where the program is large."""
     wanted = compilation.numba_is_imported() if options.by_numba is None else options.by_numba
-    return _regular_iterations() if wanted and n <= WORTH_EDGES else None
+    return _by_numba() if wanted and n <= WORTH_EDGES else IN_NUMPY
 
 
 @lru_cache(maxsize=1)
-def _regular_iterations() -> Iterations | None:
-    """`tableau.regular_iterations`, or None without numba; its first call compiles it, which takes seconds once."""
+def _by_numba() -> MachineCode:
+    """The functions of this package that import numba; the first call of each compiles it, which takes seconds once."""
+    package = "bemcontact.formulations.local_solver"
     try:
-        return import_module("bemcontact.formulations.local_solver.tableau").regular_iterations  # it imports numba
+        scaling, tableau = (import_module(f"{package}.{module}") for module in ("compiled_scaling", "tableau"))
     except ImportError:
-        return None
+        return IN_NUMPY
+    return scaling.scaled_data, tableau.regular_iterations
 
 
 def _wanted(working_set: ArrayLike, size: int) -> BoolArray:

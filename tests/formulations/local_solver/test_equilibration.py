@@ -3,16 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
-from hypothesis import given, settings
+import pytest
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from bemcontact.formulations.local_solver.equilibration import (
-    OF_BOUNDS,
-    OF_OBJECTIVE,
-    _entries,
-    equilibrate,
-    natural_factors,
-)
+from bemcontact.errors import ProblemError
+from bemcontact.formulations.local_solver.equilibration import OF_BOUNDS, OF_OBJECTIVE, _entries, equilibrate
 from bemcontact.formulations.local_solver.statement import Statement
 
 
@@ -51,17 +47,24 @@ def least_squares(stated):
     return np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0][:-1]
 
 
-@settings(max_examples=60)
+SAME_ROOM = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+
+
+def natural_factors(room, stated):
+    return room.natural_factors(stated.H, stated.c, stated.A, np.array([stated.lower, stated.upper]))
+
+
+@settings(SAME_ROOM, max_examples=60)
 @given(st.integers(0, 10**9))
-def test_natural_factors_are_the_least_squares_solution(seed):
+def test_natural_factors_are_the_least_squares_solution(room, seed):
     stated = statement(seed)
-    factors = natural_factors(stated, np.array([stated.lower, stated.upper]))
+    factors = natural_factors(room, stated)
     assert np.abs(np.log2(factors) - least_squares(stated)).max() <= 0.01  # the factors have a small weight
 
 
-@settings(max_examples=100)
+@settings(SAME_ROOM, max_examples=100)
 @given(st.integers(0, 10**9))
-def test_natural_factors_change_with_the_units(seed):
+def test_natural_factors_change_with_the_units(room, seed):
     """So scaled data do not depend on units. No entry is as small as noise.
 
     Both are within 0.01 of least squares, which change so exactly; see the test above.
@@ -76,37 +79,62 @@ def test_natural_factors_change_with_the_units(seed):
         lower=np.zeros(n + m),
         upper=np.concatenate([1.0 / columns, rows]) * stated.upper,
     )
-    plain = natural_factors(stated, np.array([stated.lower, stated.upper]))
-    other = natural_factors(changed, np.array([changed.lower, changed.upper]))
+    plain = natural_factors(room, stated)
+    other = natural_factors(room, changed)
     expected = plain / np.concatenate([columns, rows])
     assert np.abs(np.log2(other / expected)).max() <= 2 * 0.01
 
 
-@settings(max_examples=100)
+@settings(SAME_ROOM, max_examples=100)
 @given(st.integers(0, 10**9))
-def test_entries_that_are_rounding_do_not_count(seed):
+def test_entries_that_are_rounding_do_not_count(room, seed):
     """Those of H in pairs, and whatever the unit of the objective; the factors are those without these entries."""
     stated, rng = statement(seed), np.random.default_rng(seed)
     m, n = stated.A.shape
     columns, rows = (10.0 ** rng.integers(-8, 9, size) for size in (n, m))
     wide = replace(stated, H=columns[:, None] * stated.H * columns, A=rows[:, None] * stated.A * columns)
     unit = 10.0 ** rng.integers(-12, 13)
-    counted = _entries(wide)[0]
-    np.testing.assert_array_equal(counted, _entries(replace(wide, H=unit * wide.H, c=unit * wide.c))[0])
+    counted = _entries(wide.H, wide.c, wide.A)[0]
+    np.testing.assert_array_equal(counted, _entries(unit * wide.H, unit * wide.c, wide.A)[0])
     np.testing.assert_array_equal(counted[:n], counted[:n].T)
     without = replace(wide, H=counted[:n] * wide.H, A=counted[n + 1 :] * wide.A)
-    factors = natural_factors(wide, np.array([wide.lower, wide.upper]))
+    factors = natural_factors(room, wide)
     far = np.abs(np.log2(factors) - least_squares(without)).max()
     assert far <= 0.01 * np.abs(np.log2([*columns, *rows, 2.0])).max()  # the factors have a small weight
 
 
-@settings(max_examples=100)
+@settings(SAME_ROOM, max_examples=100)
 @given(st.integers(0, 10**9), st.sampled_from([0.3, 0.7]))
-def test_columns_and_rows_of_the_scaled_matrix_have_size_one(seed, density):
+def test_columns_and_rows_of_the_scaled_matrix_have_size_one(room, seed, density):
     """Rows to the nearest power of two; no entry is larger than its row; zeros stay zeros."""
     stated = statement(seed, density=density)
-    A = equilibrate(stated)[0].A
+    A = equilibrate(stated, room.scaled_data)[0].A
     lengths = np.linalg.norm(A, axis=1)
     assert ((A != 0.0) == (stated.A != 0.0)).all()
     filled = lengths > 0.0
     assert np.all(np.abs(np.log2(lengths[filled])) <= 0.5 + 1e-9)
+
+
+@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("density", [0.2, 1.0])
+def test_machine_code_scales_as_numpy_does(machine_code, seed, density):
+    """To the last digit: all factors are powers of two, and none is so near to between two that rounding decides."""
+    stated, rng = statement(seed, density=density), np.random.default_rng(seed)
+    m, n = stated.A.shape
+    columns, rows = (10.0 ** rng.integers(-12, 13, size) for size in (n, m))  # some entries are rounding beside others
+    wide = replace(
+        stated, H=columns[:, None] * stated.H * columns, A=rows[:, None] * stated.A * columns, upper=1e-3 * stated.upper
+    )
+    ours, theirs = equilibrate(wide), equilibrate(wide, machine_code["compiled_scaling"].scaled_data)
+    for one, other in zip(ours, theirs, strict=True):
+        for name in vars(one).keys() & one.__dataclass_fields__.keys():
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+
+
+@pytest.mark.parametrize("entry", [1e308, 1e-308])
+def test_what_no_number_represents_is_refused(room, entry):
+    """A product of two units of variables is beyond double precision, however these are chosen."""
+    H, A = np.diag([entry, 1 / entry, 1.0]), np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1e300, 1.0, 1e-300]])
+    wide = Statement(H=H, c=np.array([1e300, 1e-300, 1e300]), A=A, lower=np.full(6, -1e19), upper=np.full(6, 5e-324))
+    with pytest.raises(ProblemError, match="too far apart"):
+        equilibrate(wide, room.scaled_data)

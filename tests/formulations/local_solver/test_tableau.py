@@ -1,9 +1,8 @@
 """Iterations by machine code: they end where the phases end, on a tableau that is what it is said to be.
 
-In a fresh tree numba compiles for about 15 s, so that tests of compiled code are slow. Its source is run as Python too.
+What `machine_code` is, `conftest` says.
 """
 
-import importlib.util
 import subprocess
 import sys
 
@@ -13,6 +12,7 @@ from numpy.testing import assert_allclose
 
 from bemcontact import compilation
 from bemcontact.formulations.local_solver import minimize
+from bemcontact.formulations.local_solver.equilibration import scaled_data
 from bemcontact.formulations.local_solver.minimize import minimize_qp
 from bemcontact.formulations.local_solver.phase_two import WORTH_EDGES
 from bemcontact.formulations.local_solver.result import QPOptions, QPStatus
@@ -22,20 +22,9 @@ NAME = "bemcontact.formulations.local_solver.tableau"
 BY_CODE, BY_PHASES = QPOptions(by_numba=True), QPOptions(by_numba=False)
 
 
-@pytest.fixture(params=["as Python", pytest.param("compiled", marks=pytest.mark.slow)])
-def tableau(request, monkeypatch):
-    """The module, and what it is made of runs as Python, which takes no seconds at first, or is compiled."""
-    if request.param == "compiled":
-        yield importlib.import_module(NAME)
-        return
-    found = importlib.util.find_spec(NAME)
-    module = importlib.util.module_from_spec(found)
-    monkeypatch.setattr(compilation, "compiled", lambda **_: lambda function: function)
-    found.loader.exec_module(module)
-    monkeypatch.setitem(sys.modules, NAME, module)
-    minimize._regular_iterations.cache_clear()
-    yield module
-    minimize._regular_iterations.cache_clear()
+@pytest.fixture
+def tableau(machine_code):
+    return machine_code["tableau"]
 
 
 def program(seed, *, convex, feasible, vertex=False):
@@ -215,7 +204,8 @@ def test_machine_code_is_used_where_numba_is_imported_and_the_program_is_small(m
     n = WORTH_EDGES + 1
     small, large = ((-np.eye(k), np.ones(k), None, None, None, -np.ones(k), np.ones(k)) for k in (3, n))
     calls = []
-    monkeypatch.setattr(minimize, "_regular_iterations", lambda: lambda _, sides: calls.append(sides.size) or sides)
+    code = scaled_data, lambda _, sides: calls.append(sides.size) or sides
+    monkeypatch.setattr(minimize, "_by_numba", lambda: code)
     minimize_qp(*small)
     assert calls == []
     monkeypatch.setattr(compilation, "numba_is_imported", lambda: True)
@@ -229,9 +219,9 @@ def test_machine_code_is_used_where_numba_is_imported_and_the_program_is_small(m
 def test_without_numba_the_phases_take_all_iterations(monkeypatch):
     monkeypatch.setitem(sys.modules, "numba", None)
     monkeypatch.delitem(sys.modules, NAME, raising=False)
-    minimize._regular_iterations.cache_clear()
+    minimize._by_numba.cache_clear()
     result = minimize_qp(*program(2, convex=True, feasible=True), options=BY_CODE)
-    minimize._regular_iterations.cache_clear()
+    minimize._by_numba.cache_clear()
     assert result.status is QPStatus.LOCAL_MINIMIZER
     assert not result.by_numba
 
