@@ -536,13 +536,16 @@ def _newton(p: FlatProgram, t: Tableau) -> float:
 
 @compiled(inner=True)
 def _terms(p: FlatProgram, d: Array) -> float:
-    """Sum of the sizes of the terms of dᵀHd."""
-    terms = 0.0
+    """Size of the numbers whose rounding dᵀHd has, as in `Statement.rounding`."""
+    terms, length, bent = 0.0, 0.0, 0.0
     for i in range(d.size):
         if d[i] != 0.0:
+            product = 0.0
             for j in range(d.size):
-                terms += abs(d[i] * p.H[i, j] * d[j])
-    return terms
+                product += abs(p.H[i, j] * d[j])
+            terms += abs(d[i]) * product
+            length, bent = max(length, abs(d[i])), max(bent, product)
+    return terms + length * bent
 
 
 @compiled()

@@ -183,6 +183,21 @@ def test_a_small_curvature_without_rounding_is_not_zero():
     assert min(line.value for line in result.log) == pytest.approx(-1.25e-7, rel=1e-9)
 
 
+def test_a_curvature_that_rounding_of_the_direction_has_is_zero(tableau, monkeypatch):
+    """A fall along a line whose direction has an entry of the size of rounding where H is not zero."""
+    counts = []
+
+    def watched(p, t, limits, descend=tableau.descend):
+        t.T[1, 0] = 1e-17
+        descend(p, t, limits)
+        counts.append(int(t.counts[1]))
+
+    monkeypatch.setattr(tableau, "descend", watched)
+    result = minimize_qp(np.diag([1.0, 0.0]), [0.0, -1.0], bl=[-1.0, 0.0], bu=[1.0, 5.0], options=BY_CODE)
+    assert counts == [1]
+    assert result.x.tolist() == [0.0, 5.0]
+
+
 @pytest.mark.usefixtures("tableau")
 def test_fixed_variables_are_held_whatever_the_working_set():
     ones = np.ones(5)
