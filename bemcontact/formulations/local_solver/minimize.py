@@ -135,7 +135,7 @@ def _second_phase(progress: SearchState, descent: Descent, renewals: int) -> Fin
         _inwards(progress, ray)
         return _finding(progress, QPStatus.UNBOUNDED, descent.working.sides, ray=ray)
     if outcome.ending is Ending.INACCURATE:
-        return Restart(sides=descent.working.sides, failed=True)
+        return Restart(sides=descent.working.sides, failed=descent.broken or renewals >= RENEWALS)
     working = descent.working
     multipliers, zeros = working.of_all(descent.multipliers), working.of_all(descent.zeros)
     conditions = first_order(progress, working.held, multipliers, zeros, lambda: working.of_all(descent.sizes))

@@ -32,6 +32,8 @@ ROUNDED = 4.0 * EPS / SEEN
 """Size of a component that is zero in truth, over the numbers whose rounding it is."""
 CLEAR = 1e3
 """A multiplier of the wrong sign is released without refinement if it exceeds the zero of all by this factor."""
+SHRINKS, CONJUGATE = 0.25, 0.1
+"""The reduced gradient is at most a root of this part after a Newton step, if ZᵀHZ differs by no more from one."""
 WORTH_EDGES = 250
 """Number of variables from which iterations saved by steepest-edge pricing are worth its time."""
 
@@ -85,6 +87,12 @@ class ReducedHessian:
             return True
         slopes = self.slopes(gradient)
         return dot(slopes, slopes) * self._top * gradient.size <= zero**2
+
+    def is_conjugate(self) -> bool:
+        """Whether ZᵀHZ = I up to what Newton steps bear: O(n k²)."""
+        product = self.Z.T.dot(self.statement.bent(self.Z))
+        product.reshape(-1)[:: self.size + 1] -= 1.0
+        return largest(product) <= CONJUGATE
 
     def enter(self, direction: Array) -> None:
         """Add a unit direction to the null space, to Z or as the pending one: O(n²)."""
@@ -178,7 +186,8 @@ class Descent:
     value : scaled objective
     dropped : the constraint released for the next step, or None
     changed : whether the working set has changed since the last whole Newton step
-    broken : whether a constraint ended a step that by its normal cannot: the factors have lost too many digits
+    broken, worn : whether the factors have lost too many digits: a constraint ended a step that by its normal cannot,
+        or Z is no longer conjugate
     whole, idle : number of consecutive full Newton steps; number of releases since the last step
     multipliers, zeros : (n + r,) at a stationary end: multipliers of the working set, and the size of each that counts
         as zero; those of the variables are components of the gradient
@@ -187,9 +196,9 @@ class Descent:
     def __init__(self, progress: SearchState, working: WorkingSet) -> None:
         self.progress = progress
         self.dropped: int | None = None
-        self.changed = self.broken = False
+        self.changed = self.broken = self.worn = False
         self.whole = self.idle = 0
-        self._moved = 0.0
+        self._moved = self._fall = 0.0
         self._known: tuple[Array, Array, Array, Array] | None = None
         self._refused: set[int] = set()
         self._edges: SteepestEdge | None = None
@@ -208,7 +217,7 @@ class Descent:
     def run(self) -> PhaseTwoEnd:
         """Iterate until no release of a constraint reduces the objective, or until another ending."""
         progress, working, hessian = self.progress, self.working, self.hessian
-        while not self.broken:
+        while not (self.broken or self.worn):
             if hessian.pending is None and self._settled():
                 newton, place = self._next(working.multipliers(progress.gradient))
                 if not newton:
@@ -350,7 +359,10 @@ class Descent:
         slope, length = dot(progress.gradient, direction), sqrt(dot(direction, direction))
         block = nearest(progress, along, length, working.held, working)
         if block is None or block.step > 1.0:
-            self.changed, self.whole = False, self.whole + 1
+            self.worn = self.whole > 0 and slope < SHRINKS * self._fall and not self.hessian.is_conjugate()
+            if self.worn:
+                return
+            self.changed, self.whole, self._fall = False, self.whole + 1, slope
             if self._rests(direction):
                 return
             self._advance(along, length, 1.0, 0.5 * slope, None)

@@ -1,6 +1,7 @@
 """What phase two takes for zero: rounding of the point and of the multipliers never counts as more."""
 
 import numpy as np
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -101,3 +102,25 @@ def test_tolerances_of_constraints_grow_far_away_alone():
     progress.place(np.zeros(2))
     progress.tighten()
     np.testing.assert_allclose(progress.slack, [1e-11, 1e-11, 5e-11])
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_basis_that_is_no_longer_conjugate_is_made_anew(seed, monkeypatch):
+    """Three times the basis makes each Newton step nine times as long, and so the reduced gradient eight times."""
+    made = []
+
+    def damaged(self, statement, null_space, make=ReducedHessian.__init__):
+        make(self, statement, null_space)
+        made.append(self)
+        if len(made) == 1:
+            self.Z[:] *= 3.0
+
+    monkeypatch.setattr(ReducedHessian, "__init__", damaged)
+    rng = np.random.default_rng(seed)
+    B, c = rng.standard_normal((6, 6)), rng.standard_normal(6)
+    H = B @ B.T + np.eye(6)
+    result = minimize_qp(H, c, options=QPOptions(by_numba=False))
+    assert len(made) > 1
+    assert result.status is QPStatus.LOCAL_MINIMIZER
+    assert result.iterations <= 4  # two before, at most two after
+    np.testing.assert_allclose(H @ result.x, -c, atol=1e-9 * abs(c).max())
