@@ -1,17 +1,56 @@
 """Compilation to machine code by numba (the extra ``fast``)."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager
+from contextvars import ContextVar
 from functools import lru_cache
 from typing import Any, TypeVar
 
 Function = TypeVar("Function", bound=Callable[..., object])
+Watch = Callable[[], AbstractContextManager[object]]
+
+_WATCH: ContextVar[Watch | None] = ContextVar("watch", default=None)
+"""What is entered while numba compiles for this thread."""
 
 
 @lru_cache(maxsize=1)
 def numba_is_imported() -> bool:
     """Whether numba was imported before the first body of this process: no body changes the digits of the next."""
     return "numba" in sys.modules
+
+
+@contextmanager
+def watched(watch: Watch) -> Iterator[None]:
+    """Enter `watch()` while numba compiles in this thread. It compiles nothing where it finds machine code kept."""
+    token = _WATCH.set(watch)
+    try:
+        yield
+    finally:
+        _WATCH.reset(token)
+
+
+@lru_cache(maxsize=1)
+def _listen() -> None:
+    """Let numba report its compilations to what watches: a call of what is compiled costs nothing more."""
+    from numba.core import event
+
+    class Compilations(event.Listener):
+        """One at a time, for numba locks them; those of inner functions are within that of the outer one."""
+
+        def __init__(self) -> None:
+            self.begun: list[ExitStack] = []
+
+        def on_start(self, event: object) -> None:
+            watch = None if self.begun else _WATCH.get()
+            self.begun.append(ExitStack())
+            if watch is not None:
+                self.begun[-1].enter_context(watch())
+
+        def on_end(self, event: object) -> None:
+            self.begun.pop().close()
+
+    event.register("numba:compile", Compilations())
 
 
 def compiled(*, inner: bool = False, reorder: bool = False) -> Callable[[Function], Function]:
@@ -24,6 +63,7 @@ def compiled(*, inner: bool = False, reorder: bool = False) -> Callable[[Functio
     """
     import numba
 
+    _listen()
     njit: Any = numba.njit
     # no option changes a result by more than round-off: no check for division by zero, fused multiply-add
     options = {"nogil": True, "error_model": "numpy", "fastmath": {"contract", "reassoc"} if reorder else {"contract"}}

@@ -1,6 +1,5 @@
 """Comparison of formulations on one mesh or several."""
 
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Unpack, cast
@@ -186,11 +185,11 @@ def _attempted(
 ) -> Attempt:
     """Solve by one formulation, from the null start, and from random ones if that is asked for."""
     label = attempt.label(with_penalty=options.has_penalties)
-    begin, searches = time.perf_counter(), None
+    before, searches = watch.seconds.get(label, 0.0), None
     try:
         with watch.stage(label):
             solution = FORMULATIONS[attempt.formulation](contact, attempt)
-        seconds = time.perf_counter() - begin
+        seconds = watch.seconds[label] - before
         if options.starts is not None and attempt.uses("start"):
             with watch.stage(f"{label}, random starts") as say:
                 several = replace(attempt, starts=options.starts, seed=options.seed)

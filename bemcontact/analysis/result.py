@@ -112,7 +112,8 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     """The bodies of each contact, first the one on which its force acts; the second is '' for a rigid surface. Empty
     if an only body touches rigid surfaces."""
     seconds: dict[str, float]
-    """Time of each stage. Notes say which bodies reuse the condensation of another one."""
+    """Time of each stage: "compilation" is that by numba, and in no other stage. Notes say which bodies reuse the
+    condensation of another one."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -150,7 +151,8 @@ class Result(Recorded, Tabular):
     accuracy: Accuracy
     """Error bars of the mesh, and whether they are as small as was asked."""
     seconds: dict[str, float]
-    """Time of each stage. Notes say which bodies reuse the condensation of another one."""
+    """Time of each stage: "compilation" is that by numba, and in no other stage. Notes say which bodies reuse the
+    condensation of another one."""
     starts: RandomStarts | None = None
     """Searches from random starts, if any were asked for."""
 

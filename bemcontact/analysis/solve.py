@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Self, TypeVar, Unpack, cast
 
+from bemcontact import compilation
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.singularities import Singularity
 from bemcontact.analysis.diagnostics import diagnostics, sides_of_one_body
@@ -50,20 +51,35 @@ NOT_ASKED: dict[str, object] = {"accuracy": "stated", "refine": 1}
 """Values of keywords that ask for nothing; of the others it is None."""
 
 
+COMPILATION = "compilation"
+"""Name of the stage in which numba compiles, which is within another one."""
+
+
 @dataclass(kw_only=True)
 class Stopwatch:
     """Times stages, and reports them while they run."""
 
     progress: Progress | None = None
     seconds: dict[str, float] = field(default_factory=dict)
+    """Of each stage without those within it: the sum is the time of all."""
 
     @contextmanager
     def stage(self, name: str) -> Iterator[Callable[[str], None]]:
         """Time a stage, which may report how far it has come; a stage that comes again adds to its seconds."""
         self._report(name, "")
-        begin = time.perf_counter()
-        yield lambda now: self._report(name, now)
-        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - begin
+        begin = time.perf_counter() - sum(self.seconds.values())
+        with compilation.watched(lambda: self._compilation(name)):
+            yield lambda now: self._report(name, now)
+        own = time.perf_counter() - begin - sum(self.seconds.values())
+        self.seconds[name] = self.seconds.get(name, 0.0) + own
+
+    @contextmanager
+    def _compilation(self, within: str) -> Iterator[None]:
+        """Time a compilation as a stage of its own, and go back to the stage that waits for it."""
+        with self.stage(COMPILATION) as say:
+            say("by numba, once")
+            yield
+        self._report(within, "")
 
     def _report(self, name: str, now: str) -> None:
         """Report a stage, if somebody listens."""

@@ -475,6 +475,9 @@ def add_all(
     step = block_size(len(points.base))
 
     def work(starts: Sequence[int]) -> None:
-        add_rows(out, np.array(starts), step, points, elements, columns, rules, factor)
+        add_rows(out, np.array(starts, np.int64), step, points, elements, columns, rules, factor)
 
-    share_out(work, range(0, len(points.base), step))
+    starts = range(0, len(points.base), step)
+    if len(starts) > 1:
+        work(())  # compiles in this thread, which knows who waits for it
+    share_out(work, starts)

@@ -5,16 +5,17 @@
 Every solver starts at the null vector and makes whatever claim it makes; what it found is judged elsewhere, from x.
 """
 
+import ctypes
 import importlib
 import importlib.util
 import multiprocessing
 import os
 import queue
-import statistics
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from contextlib import contextmanager
+from dataclasses import dataclass
 from enum import Enum
 from multiprocessing.process import BaseProcess
 from multiprocessing.queues import Queue
@@ -27,10 +28,6 @@ from scipy.optimize import minimize
 
 Array = NDArray[np.float64]
 
-REPEATS = 5
-"""Runs of which the median time is taken, if they are quick."""
-QUICK = 0.2
-"""Seconds."""
 ONE_SHOT_RADIUS = 1e10
 """Trust region so wide that Uno hands the whole program to BQPD at once."""
 
@@ -53,13 +50,11 @@ class Answer:
     x : (n,) or None
     claim : Claim
     says : the solver's own words
-    seconds : CPU time of one whole call, its input converted and its output read; wall time at the limit
     """
 
     x: Array | None
     claim: Claim
     says: str = ""
-    seconds: float = np.nan
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -175,7 +170,7 @@ def run(peer: Peer, instance: Instance, limit: float) -> Answer:
     answers = context.Queue()
     process = context.Process(target=_work, args=(answers, peer, instance), daemon=True)
     process.start()
-    answer = Answer(x=None, claim=Claim.NOTHING, says="time limit or crash", seconds=limit)
+    answer = Answer(x=None, claim=Claim.NOTHING, says="time limit or crash")
     try:
         answer = _first(answers, process, limit)
     except queue.Empty:
@@ -198,26 +193,29 @@ def _first(answers: Queue, process: BaseProcess, limit: float) -> Answer:
 
 
 def _work(answers: Queue, peer: Peer, instance: Instance) -> None:
-    """The first answer with the median time, as the child of `run`."""
-    silence = os.open(os.devnull, os.O_WRONLY)
-    for stream in (1, 2):
-        os.dup2(silence, stream)
+    """Answer as the child of `run`."""
+    with silenced():
+        try:
+            answers.put(peer.solve(instance))
+        except Exception as error:
+            answers.put(Answer(x=None, claim=Claim.NOTHING, says=f"{type(error).__name__}: {error}"))
+
+
+@contextmanager
+def silenced() -> Iterator[None]:
+    """Let nothing appear of what is written to the standard streams, by compiled code too."""
+    kept = {stream: os.dup(stream) for stream in (1, 2)}
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in kept:
+        os.dup2(nowhere, stream)
     try:
-        answer, *others = _timed(peer, instance)
-        answers.put(replace(answer, seconds=statistics.median(run.seconds for run in (answer, *others))))
-    except Exception as error:
-        answers.put(Answer(x=None, claim=Claim.NOTHING, says=f"{type(error).__name__}: {error}"))
-
-
-def _timed(peer: Peer, instance: Instance) -> Iterator[Answer]:
-    """One run, and a few more if it was quick."""
-    for _ in range(REPEATS):
-        begin = time.process_time()
-        answer = peer.solve(instance)
-        seconds = time.process_time() - begin
-        yield replace(answer, seconds=seconds)
-        if seconds > QUICK:
-            return
+        yield
+    finally:
+        ctypes.CDLL(None).fflush(None)  # what C has not written yet
+        for stream, copy in kept.items():
+            os.dup2(copy, stream)
+            os.close(copy)
+        os.close(nowhere)
 
 
 def _read(says: str, *, optimal: str) -> Claim:

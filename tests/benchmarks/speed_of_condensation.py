@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf
 from speed_cylinder import assembled_by, codes, cylinder
 from speed_page import Section, Settings, Table, Target
-from timing import Seconds, in_turns
+from timing import Turns, in_turns, ratio
 
 import bemcontact
 from bemcontact.bem.discretization import body_of
@@ -56,8 +56,8 @@ def condense_by(code: str, problem: bemcontact.Problem) -> None:
         bemcontact.condense(problem)
 
 
-def times_of(problem: bemcontact.Problem, rounds: int) -> tuple[System, dict[str, Seconds]]:
-    """Times of all actions; the product is timed alone, for it takes longer than most."""
+def times_of(problem: bemcontact.Problem, rounds: int) -> tuple[System, dict[str, Turns]]:
+    """Times of all actions, next to the factorization."""
     system = system_of(problem)
     matrix = np.asfortranarray(assemble(system)[0])
     actions = {
@@ -80,19 +80,20 @@ def measure(settings: Settings, say: Callable[[str], None]) -> Section:
     for refine in REFINE[: 2 if settings.quick else None]:
         problem = cylinder(refine)
         say(f"each element cut into {refine}")
-        system, times = times_of(problem, 1 if settings.quick else 3)
+        system, times = times_of(problem, 3 if settings.quick else 5)
         size, cpu = system.mesh.degrees_of_freedom, {name: item.cpu for name, item in times.items()}
-        lu = cpu["LU and copy"] - cpu["copy"]
+        lu = [both - copy for both, copy in zip(cpu["LU and copy"], cpu["copy"], strict=True)]
         raw[str(size)] = {**cpu, "LU": lu, "points": len(system.points)}
-        row = [size, len(system.points), 1e3 * lu, lu / cpu["GEMM"], 2e-9 * system.size**3 / cpu["GEMM"]]
+        product = cpu["GEMM"]
+        row = [size, len(system.points), 1e3 * min(lu), ratio(lu, product), 2e-9 * system.size**3 / min(product)]
         for kind in ("assembly", "condensation"):
             for code in names:
-                row += [1e3 * cpu[f"{kind}, {code}"], cpu[f"{kind}, {code}"] / lu]
+                row += [1e3 * min(cpu[f"{kind}, {code}"]), ratio(cpu[f"{kind}, {code}"], lu)]
         rows.append(row)
         for kind, asked in (("assembly", ASSEMBLY), ("condensation", CONDENSATION)):
             if size in asked:
-                ratio = cpu[f"{kind}, numba"] / lu if "numba" in names else None
-                targets.append(Target(name=f"{kind} with numba over LU, N = {size}", asked=asked[size], measured=ratio))
+                found = ratio(cpu[f"{kind}, numba"], lu) if "numba" in names else None
+                targets.append(Target(name=f"{kind} with numba over LU, N = {size}", asked=asked[size], measured=found))
     columns = {"N": "d", "n": "d", "LU, ms": ".1f", "LU/GEMM": ".2f", "GEMM, Gflop/s": ".0f"}
     for kind in ("assembly", "condensation"):
         for code in names:

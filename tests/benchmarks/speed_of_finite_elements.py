@@ -10,7 +10,8 @@ from finite_elements_pressed import Pressed
 from pressure_error import Pressure, relative_error
 from speed_cylinder import assembled_by, codes
 from speed_page import Section, Settings, Table, Target
-from timing import in_turns
+from timing import Spread, in_turns
+from timing import ratio as ratio_of_turns
 
 import bemcontact
 from bemcontact.bem.condense import condensed
@@ -93,12 +94,12 @@ class Attempt:
 
 @dataclass(frozen=True, kw_only=True)
 class Point:
-    """What a mesh of a family costs: unknowns, CPU seconds, its error, and that of the pressure without smoothing."""
+    """What a mesh of a family costs: unknowns, CPU seconds of each turn, its error, and that without smoothing."""
 
     family: str
     setting: float
     unknowns: int
-    seconds: float
+    turns: Sequence[float]
     error: float
     plain: float
 
@@ -170,9 +171,9 @@ class Comparison:
         """Judge and time all of them, in turns."""
         attempts = self.attempts(quick)
         judged = [attempt.judge(attempt.run()) for attempt in attempts]
-        times = in_turns({i: attempt.run for i, attempt in enumerate(attempts)}, 1 if quick else 3)
+        times = in_turns({i: attempt.run for i, attempt in enumerate(attempts)}, 3)
         return [
-            Point(family=item.family, setting=item.setting, unknowns=n, seconds=times[i].cpu, error=error, plain=plain)
+            Point(family=item.family, setting=item.setting, unknowns=n, turns=times[i].cpu, error=error, plain=plain)
             for i, (item, (n, error, plain)) in enumerate(zip(attempts, judged, strict=True))
         ]
 
@@ -202,15 +203,15 @@ def reached(points: Sequence[Point], family: str, level: float, *, plain: bool =
     return found
 
 
-def ratio(points: Sequence[Point], pair: tuple[str, str], level: float, *, plain: bool = False) -> float | None:
+def ratio(points: Sequence[Point], pair: tuple[str, str], level: float, *, plain: bool = False) -> Spread | None:
     """Time of finite elements over that of boundary elements at an equal error; None if one did not get there."""
     theirs, ours = (reached(points, family, level, plain=plain) for family in pair)
-    return theirs.seconds / ours.seconds if theirs and ours else None
+    return ratio_of_turns(theirs.turns, ours.turns) if theirs and ours else None
 
 
 def words(point: Point | None) -> str:
     """Unknowns and time of a mesh."""
-    return f"{point.unknowns}, {1e3 * point.seconds:.0f} ms" if point else "not reached"
+    return f"{point.unknowns}, {1e3 * min(point.turns):.0f} ms" if point else "not reached"
 
 
 def tables(name: str, result: Comparison) -> list[Table]:
@@ -222,7 +223,7 @@ def tables(name: str, result: Comparison) -> list[Table]:
     for row, level in zip(ratios, LEVELS, strict=True):
         row += [ratio(points, pair, level, plain=True) for pair in plain.values()]
     every = [
-        [it.family, f"{it.setting:g}", it.unknowns, 1e3 * it.seconds, 100 * it.error, 100 * it.plain]
+        [it.family, f"{it.setting:g}", it.unknowns, 1e3 * min(it.turns), 100 * it.error, 100 * it.plain]
         for it in sorted(points, key=lambda it: families.index(it.family))
     ]
     return [

@@ -6,10 +6,9 @@ import sys
 from collections.abc import Callable
 from functools import partial
 
-from children import children_seconds
 from speed_cylinder import MESH, MODEL, cylinder
 from speed_page import Section, Settings, Table, Target
-from timing import in_turns, least
+from timing import Spread, children_time, in_turns
 
 import bemcontact
 
@@ -59,18 +58,19 @@ def measure(settings: Settings, say: Callable[[str], None]) -> Section:
         times = in_turns(
             {name: partial(certified, contact, way) for name, way in ways().items()}, 1 if settings.quick else 2
         )
-        rows.append([n, *(1e3 * item.cpu for item in times.values())])
+        rows.append([n, *(1e3 * min(item.cpu) for item in times.values())])
         iterations.append([n, *counts])
         raw[str(n)] = {name: vars(item) for name, item in times.items()}
     say("compare")
     parts = 2 if settings.quick else COMPARED
     command = [sys.executable, "-m", "bemcontact", "compare", str(MODEL), "--variant", MESH, "--refine", str(parts)]
-    taken = least(children_seconds(lambda: subprocess.run(command, check=True, capture_output=True)) for _ in range(2))
+    action = partial(subprocess.run, command, check=True, capture_output=True)
+    taken = in_turns({"compare": action}, 1 if settings.quick else 3, children_time)["compare"]
     raw["compare"] = vars(taken)
     whole = Table(
         title=f"The command `compare` with elements cut into {parts}",
         columns={"CPU, s": ".2f", "wall, s": ".2f"},
-        rows=[[taken.cpu, taken.wall]],
+        rows=[[min(taken.cpu), min(taken.wall)]],
     )
     tables = [
         Table(title="CPU time, ms", columns={"n": "d", **dict.fromkeys(ways(), ".1f")}, rows=rows),
@@ -78,5 +78,6 @@ def measure(settings: Settings, say: Callable[[str], None]) -> Section:
         whole,
     ]
     name = f"`compare` of the cylinder, elements cut into {parts}, wall"
-    targets = [] if settings.quick else [Target(name=name, asked=LARGEST_COMPARISON, measured=taken.wall, unit="s")]
+    wall = Spread.of(taken.wall)
+    targets = [] if settings.quick else [Target(name=name, asked=LARGEST_COMPARISON, measured=wall, unit="s")]
     return Section(title="Formulations", text=TEXT, tables=tables, targets=targets, raw=raw)

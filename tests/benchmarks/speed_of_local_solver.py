@@ -1,16 +1,16 @@
 """The local solver beside the other solvers that are installed, on the same programs."""
 
-import statistics
 from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import product
 
 from judgement import judge
-from local_solver import COLUMNS, COMPILED, OURS, Trial, count
+from local_solver import COLUMNS, COMPILED, OURS, Trial, ratio, rows, series
 from peers import PEERS, Peer, run
 from qp_instance import Instance, contact_instances, half_plane, qp1, read_folder, status_instances
 from speed_page import Section, Settings, Table, Target
-from timing import geometric_mean, in_turns
+from timing import Spread, in_turns
+from timing import ratio as ratio_of_turns
 
 LIMIT = 10.0
 """Seconds for one program."""
@@ -25,15 +25,14 @@ MEAN, LARGEST = 2.0, {400: 3.0, 800: 3.0}
 
 TEXT = """\
 QP1 and QP2 of random half-planes, raw and scaled, programs that have no minimizer{folder}.
-Each solver starts from zero, in a process of its own, and runs up to five times. The time is the median CPU time of a
-whole call. Each program is given to all solvers before the next one. Each result is judged from its point alone, as
-on the page [Solvers](solvers.md). *our time / its* is the geometric mean over the programs that both solved to a
-point that fulfills the first-order conditions. *numba* takes the iterations of programs of up to 250 variables by
-machine code, which is loaded already. Peers that are not installed: {absent}.
+Each solver starts from zero. Its result, from a process of its own, is judged from its point alone, as on the page
+[Solvers](solvers.md). *numba* takes the iterations of programs of up to 250 variables by machine code.
+Peers that are not installed: {absent}.
 
-A process that is forked pays for memory that it shares: each page is copied when it is first written to, and a program
-in Python writes to more of them. *In one process* both run in turns, on the same programs, and each time is the least
-of several, as elsewhere on this page: this is what one program of a series costs.
+Times are those of a user who solves many programs in one process: in each round each solver takes all of them, one
+after the other, each once. Packages and machine code are loaded already. Times are of whole calls, where the point
+fulfills the first-order conditions. *Median* is over the programs. *our time / its* is the geometric mean over the
+programs that both solved. The second table has a program in each row, which both solvers take in turns.
 """
 
 
@@ -51,50 +50,27 @@ def tried(
     return done
 
 
-def ratio(ours: Sequence[Trial], its: Sequence[Trial]) -> float | None:
-    """Geometric mean of our times over those of a peer, where both came to a first-order point."""
-    pairs = zip(ours, its, strict=True)
-    return geometric_mean(a.answer.seconds / b.answer.seconds for a, b in pairs if a.first_order and b.first_order)
-
-
-def in_one_process(ours: Peer, trials: Sequence[Trial], peer: Peer, its: Sequence[Trial]) -> float | None:
-    """The same ratio where both run in turns in this process, and each time is the least of several."""
-    ratios = []
-    for a, b in zip(trials, its, strict=True):
-        if a.first_order and b.first_order:
-            times = in_turns({it.name: partial(it.solve, a.instance) for it in (ours, peer)})
-            ratios.append(times[ours.name].cpu / times[peer.name].cpu)
-    return geometric_mean(ratios)
-
-
-def summary(peers: Sequence[Peer], done: Sequence[list[Trial]]) -> Table:
-    """A row for each solver."""
-    rows = []
-    for peer, trials in zip(peers, done, strict=True):
-        counts = [count(trials, measured, among) for measured, among in COLUMNS.values()]
-        median = statistics.median(trial.answer.seconds for trial in trials)
-        rows.append([peer.name, *counts, 1e3 * median, ratio(done[0], trials)])
-    columns = {"Solver": "", **dict.fromkeys(COLUMNS, ""), "median, ms": ".2f", "our time / its": ".2f"}
-    return Table(title=f"{len(done[0])} programs, at most {LIMIT:g} s each", columns=columns, rows=rows)
-
-
 def large(
     peers: Sequence[Peer], sizes: Sequence[int], say: Callable[[str], None]
-) -> tuple[Table, dict[int, float | None]]:
-    """Times of QP1 of half-planes, and our time over that of the peer."""
-    rows, ratios = [], {}
+) -> tuple[Table, dict[int, Spread | None]]:
+    """Times of QP1 of half-planes in turns, and our time over that of the peer."""
+    table, ratios = [], {}
     for n in sizes:
         contact = half_plane(n, 1e3, seed=0)
         instance = qp1(contact, contact.stiffness_rows)
         say(f"QP1 with {n} contact points")
-        done = tried(peers, [instance], LIMIT_OF_LARGE, lambda _: None)
-        rows.append([n, *(f"{trial.answer.seconds:.3f}" if trial.right else trial.answer.says for [trial] in done)])
-        ratios[n] = next(
-            (ratio(done[0], its) for peer, its in zip(peers, done, strict=True) if peer.name == PEER), None
-        )
-        rows[-1].append(ratios[n])
+        trials = [trial for [trial] in tried(peers, [instance], LIMIT_OF_LARGE, lambda _: None)]
+        solved = [peer for peer, trial in zip(peers, trials, strict=True) if trial.right]
+        turns = in_turns({peer.name: partial(peer.solve, instance) for peer in solved})
+        both = {OURS.name, PEER} <= turns.keys()
+        ratios[n] = ratio_of_turns(turns[OURS.name].cpu, turns[PEER].cpu) if both else None
+        cells = [
+            f"{min(turns[peer.name].cpu):.3f}" if peer in solved else trial.answer.says
+            for peer, trial in zip(peers, trials, strict=True)
+        ]
+        table.append([n, *cells, ratios[n]])
     columns = {"n": "d", **dict.fromkeys((peer.name for peer in peers), ""), f"our time / {PEER}": ".2f"}
-    return Table(title="QP1 of a half-plane with n contact points, CPU s", columns=columns, rows=rows), ratios
+    return Table(title="QP1 of a half-plane with n contact points, CPU s", columns=columns, rows=table), ratios
 
 
 def measure(settings: Settings, say: Callable[[str], None]) -> Section:
@@ -108,21 +84,24 @@ def measure(settings: Settings, say: Callable[[str], None]) -> Section:
         peer.solve(instance)
     absent = [peer.name for peer in PEERS if not peer.installed]
     done = tried(peers, instances, LIMIT, say)
+    say("times")
+    times = series(peers, done, *([3] if settings.quick else []))
+    columns = {"Solver": "", **dict.fromkeys(COLUMNS, ""), "median, ms": ".2f", "our time / its": ".2f"}
+    summary = Table(
+        title=f"{len(instances)} programs, at most {LIMIT:g} s each", columns=columns, rows=rows(peers, done, times)
+    )
     second, ratios = large(
         [peer for peer in peers if peer.name in (OURS.name, PEER)], LARGE[: 1 if settings.quick else None], say
     )
-    say("the same in one process")
-    its = next((trials for peer, trials in zip(peers, done, strict=True) if peer.name == PEER), None)
-    targets = []
-    for ours, trials in zip(own, done, strict=False):
-        means = {"": None, ", in one process": None}
-        if its is not None:
-            theirs = next(peer for peer in peers if peer.name == PEER)
-            means = {"": ratio(trials, its), ", in one process": in_one_process(ours, trials, theirs, its)}
-        targets += [
-            Target(name=f"{ours.name} over {PEER}, geometric mean{how}", asked=MEAN, measured=measured)
-            for how, measured in means.items()
-        ]
+    taken = {peer.name: its for peer, its in zip(peers, times, strict=True)}
+    targets = [
+        Target(
+            name=f"{peer.name} over {PEER}, geometric mean",
+            asked=MEAN,
+            measured=ratio(taken[peer.name], taken[PEER]) if PEER in taken else None,
+        )
+        for peer in own
+    ]
     targets += [
         Target(name=f"{OURS.name} over {PEER}, QP1 with {n} contact points", asked=asked, measured=ratios.get(n))
         for n, asked in LARGEST.items()
@@ -131,8 +110,6 @@ def measure(settings: Settings, say: Callable[[str], None]) -> Section:
     text = TEXT.format(
         folder=", and the instances of a folder (`--instances`)" if folder else "", absent=", ".join(absent) or "none"
     )
-    raw = {
-        peer.name: {trial.instance.name: trial.answer.seconds for trial in trials}
-        for peer, trials in zip(peers, done, strict=True)
-    }
-    return Section(title="Local solver", text=text, tables=[summary(peers, done), second], targets=targets, raw=raw)
+    names = [instance.name for instance in instances]
+    raw = {"programs": names, **{name: its.tolist() for name, its in taken.items()}}
+    return Section(title="Local solver", text=text, tables=[summary, second], targets=targets, raw=raw)

@@ -5,12 +5,12 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
-from children import children_seconds
 from speed_cylinder import MODEL
 from speed_page import Section, Settings, Table, Target
-from timing import Seconds, least
+from timing import Spread, children_time, in_turns, ratio
 
 MEMBERS, FEW = 1000, 40
 WORKERS = (1, 2)
@@ -35,24 +35,23 @@ def study(members: int, workers: int) -> None:
 
 def measure(settings: Settings, say: Callable[[str], None]) -> Section:
     """Measure with each number of workers, in turns."""
-    members, taken = FEW if settings.quick else MEMBERS, {workers: [] for workers in WORKERS}
-    for number in range(1 if settings.quick else 2):
-        for workers in WORKERS:
-            say(f"round {number + 1}, workers: {workers}")
-            taken[workers].append(children_seconds(lambda workers=workers: study(members, workers)))
-    times: dict[int, Seconds] = {workers: least(runs) for workers, runs in taken.items()}
+    members = FEW if settings.quick else MEMBERS
+    say(f"{members} members")
+    actions = {workers: partial(study, members, workers) for workers in WORKERS}
+    times = in_turns(actions, 1 if settings.quick else 2, children_time)
+    gains = {workers: ratio(times[1].wall, item.wall) for workers, item in times.items()}
     rows = [
-        [n, members, item.wall, item.cpu, members / item.wall, times[1].wall / item.wall] for n, item in times.items()
+        [n, members, min(item.wall), min(item.cpu), members / min(item.wall), gains[n]] for n, item in times.items()
     ]
     columns = {"Workers": "d", "Members": "d", "wall, s": ".1f", "CPU, s": ".1f", "members in a second": ".1f",
                "times as fast as one": ".2f"}  # fmt: skip
-    gain = times[1].wall / times[2].wall
+    wall = Spread.of(times[2].wall)
     targets = [
-        Target(name=f"study of {members} members, two workers, wall", asked=LONGEST, measured=times[2].wall, unit="s"),
-        Target(name="study: times as fast with two workers", asked=FASTER, at_least=True, measured=gain),
+        Target(name=f"study of {members} members, two workers, wall", asked=LONGEST, measured=wall, unit="s"),
+        Target(name="study: times as fast with two workers", asked=FASTER, at_least=True, measured=gains[2]),
     ]
     enough = (os.cpu_count() or 1) >= 2 and not settings.quick
-    raw = {str(workers): [vars(run) for run in runs] for workers, runs in taken.items()}
+    raw = {str(workers): vars(item) for workers, item in times.items()}
     return Section(
         title="Studies",
         text=TEXT,

@@ -5,8 +5,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from pydantic import JsonValue, TypeAdapter
+from timing import Spread
 
-Cell = float | int | str | None
+Cell = float | int | str | Spread | None
 """None is an empty cell."""
 
 HEAD = """\
@@ -18,8 +19,13 @@ This command writes this page, and its numbers as JSON:
 python tests/benchmarks/run.py
 ```
 
-Times are CPU seconds of one thread, unless a table says *wall*: other work on the machine changes CPU times little.
-What is compared runs in turns, and each time is the least of several. Both times of a ratio are from one run.
+Times are CPU seconds of one thread, unless a table says *wall*. Each time is the least of several. Other work on the
+machine changes CPU times too, for it takes room in caches: the machine should be idle.
+
+The speed of a processor varies within seconds or minutes, and not alike for Python and for products of matrices. So
+what is compared runs in turns, close to each other: a, b, a, b and so on. A ratio is the median of the ratios of
+neighboring turns; it need not be that of the times beside it. Half of the ratios are between their quartiles. A target
+is met if both quartiles meet it, and not met if neither does. Otherwise it is *within noise*: the run does not tell.
 """
 
 
@@ -31,22 +37,29 @@ class Target:
     ----------
     name : what is measured
     asked : largest number that is good enough, or the least one if `at_least`
-    measured : None if it could not be measured
+    measured : of several turns, or a number without noise; None if it could not be measured
     unit : of both; empty for ratios
     """
 
     name: str
     asked: float
-    measured: float | None
+    measured: Spread | float | None
     unit: str = ""
     at_least: bool = False
 
     @property
-    def met(self) -> bool | None:
-        """Whether it is good enough; None if it was not measured."""
+    def quartiles(self) -> tuple[float, ...]:
+        """Both quartiles; none of a number without noise."""
+        return (self.measured.lower, self.measured.upper) if isinstance(self.measured, Spread) else ()
+
+    @property
+    def met(self) -> str:
+        """Whether it is good enough beyond noise; empty if it was not measured."""
         if self.measured is None:
-            return None
-        return self.measured >= self.asked if self.at_least else self.measured <= self.asked
+            return ""
+        values = self.quartiles or (self.measured,)
+        good = [value >= self.asked if self.at_least else value <= self.asked for value in values]
+        return "yes" if all(good) else "within noise" if any(good) else "**no**"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,25 +171,23 @@ def _beginning(run: Run) -> Iterator[str]:
 
 def _targets(run: Run) -> Iterator[str]:
     rows = [
-        (target.name, _limit(target), _number(target.measured, target.unit), _verdict(target))
+        (
+            target.name,
+            f"at {'least' if target.at_least else 'most'} {_number(target.asked, target.unit)}",
+            "not measured" if target.measured is None else _number(target.measured, target.unit),
+            " to ".join(_number(quartile) for quartile in target.quartiles),
+            target.met,
+        )
         for outcome in run.outcomes.values()
         for target in (outcome.section.targets if outcome.section else ())
     ]
     if rows:
         yield "## Targets\n"
-        yield from _rows(("Target", "Asked", "Measured", "Met"), rows)
+        yield from _rows(("Target", "Asked", "Measured", "Quartiles", "Met"), rows)
 
 
-def _limit(target: Target) -> str:
-    return f"at {'least' if target.at_least else 'most'} {_number(target.asked, target.unit)}"
-
-
-def _number(value: float | None, unit: str) -> str:
-    return "not measured" if value is None else f"{value:.3g} {unit}".rstrip()
-
-
-def _verdict(target: Target) -> str:
-    return {True: "yes", False: "**no**", None: ""}[target.met]
+def _number(value: Spread | float, unit: str = "") -> str:
+    return f"{value:.3g} {unit}".rstrip()
 
 
 def _sections(run: Run) -> Iterator[str]:

@@ -1,10 +1,11 @@
-"""Times of actions in turns, so that other work on the machine disturbs their ratios little."""
+"""Times of actions in turns, and ratios of neighboring turns: other work and a slower processor change both alike."""
 
+import importlib
 import statistics
 import time
 from collections.abc import Callable, Hashable, Iterable, Mapping
-from dataclasses import dataclass
-from typing import TypeVar
+from dataclasses import dataclass, field
+from typing import Self, TypeVar
 
 Key = TypeVar("Key", bound=Hashable)
 
@@ -16,52 +17,76 @@ AT_ONCE, MOST_AT_ONCE = 0.05, 3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Seconds:
-    """Least processor time of this process, and least time of the clock, of several runs of an action."""
+class Spread:
+    """Median of several values, and the quartiles, between which half of them are. It is formatted as its median."""
 
-    cpu: float
-    wall: float
+    median: float
+    lower: float
+    upper: float
+
+    def __format__(self, form: str) -> str:
+        return format(self.median, form)
+
+    @classmethod
+    def of(cls, values: Iterable[float]) -> Self:
+        """That of at least one value."""
+        values = list(values)
+        some = values if len(values) > 1 else 2 * values
+        lower, median, upper = statistics.quantiles(some, n=4, method="inclusive")
+        return cls(median=median, lower=lower, upper=upper)
 
 
-def seconds_of(action: Callable[[], object]) -> Seconds:
-    """Run an action once."""
-    cpu, wall = time.process_time(), time.perf_counter()
-    action()
-    return Seconds(cpu=time.process_time() - cpu, wall=time.perf_counter() - wall)
+def ratio(ones: Iterable[float], others: Iterable[float]) -> Spread:
+    """Of the ratios of neighboring turns: those of the same round."""
+    return Spread.of(one / other for one, other in zip(ones, others, strict=True))
 
 
-def in_turns(actions: Mapping[Key, Callable[[], object]], rounds: int = 3) -> dict[Key, Seconds]:
-    """Run all actions one after the other in each round, and take the least times; brief actions get more rounds."""
-    taken: dict[Key, list[Seconds]] = {name: [] for name in actions}
+@dataclass(frozen=True, kw_only=True)
+class Turns:
+    """Times of all turns of an action [s]: of the processor, and of the clock."""
+
+    cpu: list[float] = field(default_factory=list)
+    wall: list[float] = field(default_factory=list)
+
+
+def own_time() -> float:
+    """Processor time of this process [s]."""
+    return time.process_time()
+
+
+def children_time() -> float:
+    """Processor time of the processes that this one has started and waited for [s]."""
+    resource = importlib.import_module("resource")  # Windows has none
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def in_turns(
+    actions: Mapping[Key, Callable[[], object]], rounds: int = 5, processor_time: Callable[[], float] = own_time
+) -> dict[Key, Turns]:
+    """Run all actions one after the other in each round; brief actions get more rounds."""
+    turns = {name: Turns() for name in actions}
     begin = time.perf_counter()
     for number in range(1, MOST_ROUNDS + 1):
         for name, action in actions.items():
-            taken[name] += one_turn(action)
+            cpu, wall = one_turn(action, processor_time)
+            turns[name].cpu.append(cpu)
+            turns[name].wall.append(wall)
         if number >= rounds and time.perf_counter() - begin >= BRIEF:
             break
-    return {name: least(runs) for name, runs in taken.items()}
+    return turns
 
 
-def one_turn(action: Callable[[], object]) -> list[Seconds]:
-    """Run an action, and a brief one a few times."""
-    runs = [seconds_of(action)]
-    while len(runs) < MOST_AT_ONCE and sum(run.wall for run in runs) < AT_ONCE:
-        runs.append(seconds_of(action))
-    return runs
-
-
-def least(runs: Iterable[Seconds]) -> Seconds:
-    """Least of each of the two times."""
-    runs = list(runs)
-    return Seconds(cpu=min(run.cpu for run in runs), wall=min(run.wall for run in runs))
+def one_turn(action: Callable[[], object], processor_time: Callable[[], float] = own_time) -> tuple[float, float]:
+    """Run an action, a brief one a few times; the least processor time, and the least time of the clock."""
+    runs: list[tuple[float, float]] = []
+    while not runs or (len(runs) < MOST_AT_ONCE and sum(wall for _, wall in runs) < AT_ONCE):
+        cpu, wall = processor_time(), time.perf_counter()
+        action()
+        runs.append((processor_time() - cpu, time.perf_counter() - wall))
+    return min(cpu for cpu, _ in runs), min(wall for _, wall in runs)
 
 
 def best_of(action: Callable[[], object], rounds: int = 3) -> float:
     """Shortest of a few runs, in seconds of the clock."""
-    return min(seconds_of(action).wall for _ in range(rounds))
-
-
-def geometric_mean(ratios: Iterable[float]) -> float | None:
-    """Geometric mean of positive numbers; None if there are none."""
-    ratios = list(ratios)
-    return statistics.geometric_mean(ratios) if ratios else None
+    return min(in_turns({"": action}, rounds)[""].wall)
