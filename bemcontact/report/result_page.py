@@ -20,6 +20,7 @@ from bemcontact.report.facts import (
     coordinate_size,
     facts,
     force_errors,
+    largest_displacement,
     peak_of,
     peak_place,
     pressed_by,
@@ -135,7 +136,7 @@ def _headline(record: JsonObject, units: Units) -> Iterator[tuple[str, str, str]
     yield from _forces(record, units)
     for bar in bars_of(record, "displacement"):
         where = bar["at"] and f"at {vector(bar['at'], units.length, scale=coordinate_size(record))}"
-        yield "Largest displacement", with_unit(with_bar(bar["value"], bar["bar"]), units.length), where or ""
+        yield "Largest displacement", largest_displacement(bar, units), where or ""
 
 
 def _forces(record: JsonObject, units: Units) -> Iterator[tuple[str, str, str]]:

@@ -124,21 +124,26 @@ def _of_bars(result: Result) -> Iterator[tuple[str, Reading]]:
     for bar in result.accuracy.bars:
         if bar.quantity == "displacement":
             yield "displacement", _of_bar(bar)
-        elif bar.quantity in (*OF_MOVERS, "intensity") and bar.value is not None:
+        elif bar.quantity in OF_MOVERS or (bar.quantity == "intensity" and bar.value is not None):
             yield f"{bar.quantity}.{bar.zone or _without_center(bar.mover or '')}", _of_bar(bar)
 
 
 def _of_rotations(result: Result) -> Iterator[tuple[str, Reading]]:
-    """Free rotations of bodies without their errors; zero where one is round-off, which has no error bar."""
+    """Free rotations of bodies without their errors; zero where one is round-off, which has no error bar.
+
+    There is no value where the amount is not known.
+    """
     contact, pressure, angles = result.contact, result.solution.pressure, result.rotations
-    if angles is None or not result.footprint.intervals:
-        return  # nothing determines them
-    least = angle_of_round_off(contact.points, contact.normals, pressure > ROUND_OFF * pressure.max())
-    least = max(least, ROUND_OFF * contact.scales.displacement / (float(np.abs(contact.points).max()) or 1.0))
+    if angles is None:
+        return
+    least = ROUND_OFF * contact.scales.displacement / (float(np.abs(contact.points).max()) or 1.0)
+    if result.footprint.intervals:
+        pressed = pressure > ROUND_OFF * pressure.max()
+        least = max(least, angle_of_round_off(contact.points, contact.normals, pressed))
     for name, angle in zip(contact.motion_names, angles.tolist(), strict=True):
         turns = name.startswith(TURNS) and " of the tool " not in name and NEARLY not in name
-        if turns and name not in result.solution.undetermined:
-            yield f"rotation.{_without_center(name)}", Reading(value=angle if abs(angle) > least else 0.0)
+        if turns:
+            yield f"rotation.{_without_center(name)}", Reading(value=0.0 if abs(angle) <= least else angle)
 
 
 def _without_center(mover: str) -> str:
