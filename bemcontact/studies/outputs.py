@@ -24,7 +24,7 @@ OF_ZONES = ("force", "force_x", "force_y", "intervals", "start", "end", "length"
 OF_INTERVALS = ("start", "end", "length")
 """Those of them that each contact interval has."""
 OF_MOVERS = ("motion", "rotation")
-"""Outputs of each tool and free motion, as ``motion.press``."""
+"""Outputs of each tool and free motion, as ``motion.press``; ``rotation.block`` has those of a body."""
 FREE = ("translation", "rotation")
 """First words of the free motions."""
 TURNS, NEARLY = "rotation ", "nearly a translation"
@@ -198,8 +198,8 @@ def chosen(output: str | Sequence[str] | None, problem: Problem) -> tuple[str, .
             _ensure_of_zone(quantity, owner, problem)
         elif point and owner.startswith(FREE):
             _ensure_of_bodies(name, owner, problem)
-        elif point and owner not in problem.tools:
-            unknown = unknown_word("tool", owner, problem.tools)
+        elif point and owner not in (movers := [*problem.tools, *(part.name for part in problem.parts if part.name)]):
+            unknown = unknown_word("tool or body" if problem.several else "tool", owner, movers)
             every = "" if unknown.endswith("?") else f"; {quantity} has a column for each tool and each free motion"
             raise OptionError(f"output {name}: {unknown}{every}")
     return tuple(dict.fromkeys(part for name in names for part in ALL_OF.get(name, (name,))))
@@ -248,6 +248,9 @@ def columns_of(outputs: Sequence[str], present: Sequence[str]) -> tuple[str, ...
 
 
 def _owned(column: str, output: str) -> bool:
-    """Whether a column is an output of a zone or mover, or of a further interval."""
-    quantity, _, _ = column.partition(".")
-    return quantity == output or ("." in output and column.startswith(f"{output}["))
+    """Whether a column is an output of a zone or mover, of a further interval, or of a free motion of a body."""
+    (quantity, _, owner), (asked, point, name) = column.partition("."), output.partition(".")
+    if not point:
+        return quantity == asked
+    of_body = quantity == asked and quantity in OF_MOVERS and f"the body '{name}'" in owner
+    return of_body or column.startswith(f"{output}[")
