@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -150,6 +150,16 @@ def rotations(record: JsonObject) -> Iterator[tuple[str, str]]:
     for j, name in enumerate(record["motion_names"]):
         if name.startswith(TURNS) and " of the tool " not in name and NEARLY not in name:
             yield "Rotation", f"{_in_sense(name, record, j).removeprefix(TURNS)}{_angle(record, j)}"
+
+
+def rotations_of_cases(records: Mapping[str, JsonObject]) -> Iterator[tuple[str, str]]:
+    """Load case and angle of each free rotation of a body; of one that is the same in all, no case is named."""
+    told = [(case, words) for case, record in records.items() for _, words in rotations(record)]
+    count = Counter(words for _, words in told)
+    for case, words in told:
+        if count[words] < len(records) or len(records) == 1:
+            yield case, words
+    yield from (("", words) for words, times in count.items() if times == len(records) > 1)
 
 
 def _gap_left(record: JsonObject, units: Units) -> str:

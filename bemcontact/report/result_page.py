@@ -25,6 +25,7 @@ from bemcontact.report.facts import (
     peak_place,
     pressed_by,
     resolved_size,
+    rotations_of_cases,
     small,
     total_force,
 )
@@ -100,6 +101,7 @@ def render(
         cases=[_case(name, result, units) for name, result in cases.items()] if not alone else [],
         zones=[(name, row) for name, result in cases.items() for row in zone_rows(result.to_dict(), units)],
         intervals=[(name, row) for name, result in cases.items() for row in interval_rows(result.to_dict(), units)],
+        rotations=[] if alone else [*rotations_of_cases({name: result.to_dict() for name, result in cases.items()})],
         envelope=[*_envelope(cases, units)] if not alone else [],
         bars=[*accuracy_rows(alone["accuracy"], units)] if alone else [],
         bars_are=BARS_ARE,

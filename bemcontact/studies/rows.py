@@ -75,13 +75,13 @@ def row_of(number: int, values: Mapping[str, Any], result: Result, *, stresses: 
         certified=result.certified,
         met=accuracy.met,
         mesh_error=float(accuracy.worst) if known else None,
-        message=joined(_message(status, result), _without_peak(result), _beyond_bars(result)),
+        message=in_one_message(_message(status, result), _without_peak(result), _beyond_bars(result)),
         stress=_infinite_stress(result) if stresses else "",
         outputs=readings(result, stresses=stresses),
     )
 
 
-def joined(*messages: str) -> str:
+def in_one_message(*messages: str) -> str:
     """Messages as one; each of them may be empty."""
     *before, last = [message for message in messages if message] or [""]
     return "; ".join([*(message.removesuffix(".") for message in before), last])

@@ -18,7 +18,7 @@ from bemcontact.problems.units import Units
 from bemcontact.serialization import Leaf, Record, Recorded
 from bemcontact.studies.axes import Axis
 from bemcontact.studies.outputs import OF_MOVERS, columns_of
-from bemcontact.studies.rows import MemberRow, MemberStatus, joined
+from bemcontact.studies.rows import MemberRow, MemberStatus, in_one_message
 from bemcontact.version import __version__
 from bemcontact.views import Tabular
 
@@ -105,7 +105,7 @@ class StudyTable(Recorded, Tabular):
         """What is to be known of a member and the outputs in the table, in sentences; of others nothing is said."""
         unknown = [name for name in self.columns if self.unknown(row, name)]
         words = f"{' and '.join(unknown)} {'is' if len(unknown) == 1 else 'are'} not known" if unknown else ""
-        return joined(row.message, row.stress if "von_mises" in self.outputs else "", words)
+        return in_one_message(row.message, row.stress if "von_mises" in self.outputs else "", words)
 
     @staticmethod
     def unknown(row: MemberRow, column: str) -> bool:

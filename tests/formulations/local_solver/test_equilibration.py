@@ -3,9 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.equilibration import (
     OF_BOUNDS,
     OF_OBJECTIVE,
@@ -13,6 +15,8 @@ from bemcontact.formulations.local_solver.equilibration import (
     equilibrate,
     natural_factors,
 )
+from bemcontact.formulations.local_solver.minimize import minimize_qp
+from bemcontact.formulations.local_solver.result import QPOptions
 from bemcontact.formulations.local_solver.statement import Statement
 
 
@@ -110,3 +114,13 @@ def test_columns_and_rows_of_the_scaled_matrix_have_size_one(seed, density):
     assert ((A != 0.0) == (stated.A != 0.0)).all()
     filled = lengths > 0.0
     assert np.all(np.abs(np.log2(lengths[filled])) <= 0.5 + 1e-9)
+
+
+@pytest.mark.parametrize("name", ["H", "c", "A"])
+def test_entries_whose_squares_are_infinite_are_refused_without_scaling(name):
+    """1e290 ended in an OverflowError of Python. With scaling the same program is solved: x = 1 by its bounds."""
+    data = {"H": np.eye(1), "c": -np.ones(1), "A": np.ones((1, 1))}
+    data[name] = data[name] * 1e290
+    with pytest.raises(ProblemError, match=rf"^{name} has an entry of size 1e\+290, .* leave out scale=False"):
+        minimize_qp(*data.values(), None, [1e290 if name == "A" else 1.0], options=QPOptions(scale=False))
+    assert minimize_qp(*data.values(), bl=[1.0], bu=[1.0]).x == 1.0
