@@ -80,7 +80,7 @@ class MovingBody:
         body, contact = condensation.body, condensation.contact
         k = contact.free_motions
         held = HeldMotions(np.ones(k, bool), np.zeros(k), np.zeros((k, k)))
-        if solved and k and solution.pressure.any():
+        if solved and k and solution.pressure.any() and not _gains_nothing(body, contact):
             held = held_motions(surface_gaps(body, boundary, contact, solution), body, contact, solution)
         amplitudes, moved = solution.rigid_amplitudes, boundary.displacement
         found, arms = amounts(body, amplitudes, moved), np.where(turns(body), body.seen.arms, 1.0)
@@ -158,6 +158,14 @@ def held_motions(gaps: SurfaceGaps, body: Body, contact: CondensedContact, solut
     mixed = scipy.linalg.solve_sylvester(form[:count, :count], -known, form[:count, count:]) if count else form[:0]
     unheld = free @ (free.T + mixed @ others.T) if count else np.zeros_like(series)
     return HeldMotions(held, errors, unheld / sizes[:, None] * sizes)
+
+
+def _gains_nothing(body: Body, contact: CondensedContact) -> bool:
+    """Whether nothing turns, and all sides that may touch are rigid and straight: then G is zero."""
+    if turns(body).any() or (body.points.opposite.node >= 0).any():
+        return False
+    zones = (contact.normals[contact.zone == number] for number in range(len(contact.zone_names)))
+    return all((normals == normals[:1]).all() for normals in zones)
 
 
 class _Pairs(NamedTuple):
