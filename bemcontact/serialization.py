@@ -42,8 +42,14 @@ def _listed(array: NDArray[Any]) -> list[Any]:
     return array.tolist()
 
 
+def _with_gaps(array: NDArray[Any]) -> list[Any]:
+    return [None if np.isnan(value) else value for value in array.tolist()]
+
+
 Vector = Annotated[NDArray[np.float64], PlainSerializer(_listed, return_type=list[float])]
 """An array (n,) that is a list of numbers in JSON."""
+Gappy = Annotated[NDArray[np.float64], PlainSerializer(_with_gaps, return_type=list[float | None])]
+"""An array (n,) that is a list of numbers in JSON, null where it is not a number."""
 Pairs = Annotated[NDArray[np.float64], PlainSerializer(_listed, return_type=list[_ListOfTwo])]
 """An array (n, 2) that is a list of pairs in JSON."""
 Matrix = Annotated[NDArray[np.float64], PlainSerializer(_listed, return_type=list[list[float]])]

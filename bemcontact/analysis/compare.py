@@ -2,8 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Unpack, cast
 
+from bemcontact.analysis.held_motions import MovingBody
 from bemcontact.analysis.mesh_study import MeshLevel, MeshStudy, Settings
 from bemcontact.analysis.solve import (
     Prepared,
@@ -15,10 +17,14 @@ from bemcontact.analysis.solve import (
     ensure_kind,
     prepare,
 )
+from bemcontact.assessment.certificate import Certificate, CertificateKind
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Attempt
+from bemcontact.bem.condense import boundary_state
 from bemcontact.checks.arguments import ensure_callable
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.known_motions import KnownMotions
+from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import KeyPath, NotConvexError, OptionError, SolverError
 from bemcontact.formulations import FORMULATIONS, qp3
 from bemcontact.formulations.multistart import multistart
@@ -175,9 +181,20 @@ def compared_on(options: ComparisonOptions, prepared: Prepared, watch: Stopwatch
             qp3.import_cvxpy()
     attempts = [_attempted(attempt, options, contact, watch) for attempt in options.attempts]
     with watch.stage("comparison"):
-        compared = comparison(contact, reference, attempts, infinite=prepared.accuracy.infinite)
+        motions = partial(_motions, prepared)
+        compared = comparison(contact, reference, attempts, infinite=prepared.accuracy.infinite, motions=motions)
     answer = assessed(prepared, reference.solution, Weights.TRIBUTARY, watch)
     return MeshLevel(refine=1, comparison=compared, answer=answer)
+
+
+def _motions(prepared: Prepared, solution: ContactSolution, certificate: Certificate) -> KnownMotions:
+    """What is known of the free motions of a solution, from the boundary behind the contact points if there is one."""
+    contact, condensation = prepared.contact, prepared.condensation
+    if condensation is None or not contact.free_motions:
+        return KnownMotions.of(contact, solution)
+    boundary = boundary_state(condensation, solution.pressure, solution.rigid_amplitudes)
+    solved = certificate.kind is not CertificateKind.NOT_A_SOLUTION
+    return MovingBody.of(condensation, boundary, solution, solved=solved).known
 
 
 def _attempted(

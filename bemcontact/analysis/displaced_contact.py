@@ -196,7 +196,7 @@ def load_after(
     pressed = contact.lengths_by_zone @ (solution.pressure > 0)
     enough = least * pressed[pressed > 0].min() * (contact.weights @ solution.pressure)
     for number, part in enumerate(body.mesh.parts):
-        center = _centroid(part.mesh)
+        center = centroid(part.mesh)
         force, moment = _gain_of_levers(gaps, body, part, center)
         if abs(moment) > enough:
             load = load + motions.of_body(number).work_of(force, moment, about=center)
@@ -225,23 +225,29 @@ def turn_of_body(gaps: SurfaceGaps, part: MeshPart | None = None) -> float:
 
 
 def _gain_of_levers(gaps: SurfaceGaps, body: Body, part: MeshPart, center: Array) -> tuple[Array, float]:
-    """Force (2,) and moment about the centroid (2,) that the forces on a body gain as it turns by θ.
+    """Force (2,) and moment about the centroid (2,) that the forces on a body gain as it turns by θ."""
+    angle, (force, moment) = turn_of_body(gaps, part), gain_by_turn(gaps, body, part, center)
+    return angle * force, angle * moment
 
-    Their places turn with the body, which adds -θ Σ r·f to the moment. A prescribed pressure turns with its face: it
+
+def gain_by_turn(gaps: SurfaceGaps, body: Body, part: MeshPart, center: Array) -> tuple[Array, float]:
+    """Force (2,) and moment about the centroid (2,) that the forces on a body gain for each radian by which it turns.
+
+    Their places turn with the body, which adds -Σ r·f to the moment. A prescribed pressure turns with its face: it
     keeps its moment, and its resultant has another direction. A weight acts on the centroid.
     """
-    mesh, own, angle = part.mesh, part.elements, turn_of_body(gaps, part)
+    mesh, own = part.mesh, part.elements
     length, r = mesh.tributary, gaps.state.points[own] - center
     dead = float(np.vdot(length, scalar_products(gaps.state.traction[own], r)))
     following = {edge for edge, held in _conditions(gaps) if held.pressure is not None}
     with_face = np.array([name in following for name in mesh.edge_names])[mesh.edge]
     if not with_face.any():
-        return np.zeros(2), -angle * dead
+        return np.zeros(2), -dead
     normals = mesh.normals[with_face]
     pressure = length[with_face] * scalar_products(body.acting.values.traction[own][with_face], normals)
     forces = pressure[..., None] * normals
     x, y = forces.sum(axis=(0, 1)).tolist()
-    return angle * np.array([-y, x]), angle * (float(scalar_products(forces, r[with_face]).sum()) - dead)
+    return np.array([-y, x]), float(scalar_products(forces, r[with_face]).sum()) - dead
 
 
 def _conditions(gaps: SurfaceGaps) -> Iterator[tuple[str, Condition]]:
@@ -251,7 +257,7 @@ def _conditions(gaps: SurfaceGaps) -> Iterator[tuple[str, Condition]]:
         yield from case.conditions.items()
 
 
-def _centroid(mesh: Mesh) -> Array:
+def centroid(mesh: Mesh) -> Array:
     """Centroid (2,) of the area [L]."""
     x = mesh.nodes[mesh.elements] - mesh.centroid
     flux = (mesh.tributary * scalar_products(x, mesh.normals)).ravel()

@@ -21,6 +21,7 @@ from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.cached import cached_property
 from bemcontact.checks.attributes import ByName
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.known_motions import KnownMotions
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.record import (
     ContactRecord,
@@ -141,9 +142,8 @@ class Result(Recorded, Tabular):
     condensed problem, whose boundary was not looked at."""
     boundary: BoundaryState | None
     """Displacement and traction of the whole boundary; None for a condensed problem."""
-    rotations: Array | None
-    """Angle (k,) of each free motion, in radians and in the sense of its name; zero in a translation; None if unknown.
-    That of a body that touches elastic ones is the mean rotation of its boundary."""
+    known_motions: KnownMotions
+    """What is known of the free motions: `rotations` and `unknown_motions`."""
     degrees_of_freedom: int | None
     """Two for each node of the mesh; None for a condensed problem."""
     notes: tuple[str, ...]
@@ -210,6 +210,24 @@ class Result(Recorded, Tabular):
     def forces(self) -> dict[str, Pair]:
         """Force (x, y) of each contact on the body, or on the first of its two bodies, per thickness [p L]."""
         return self.footprint.forces
+
+    @property
+    def rotations(self) -> Array | None:
+        """Angle (k,) of each free motion, in radians and in the sense of its name; zero in a translation.
+
+        Not a number for `unknown_motions`; None for a condensed problem of elastic bodies that touch. That of a body
+        that touches elastic ones is the mean rotation of its boundary.
+        """
+        return self.known_motions.rotations
+
+    @property
+    def unknown_motions(self) -> tuple[str, ...]:
+        """Names of the free motions whose amount is not known.
+
+        Contact leaves them open, or only slopes and levers as drawn hold them, which move with the body. Of a condensed
+        problem they are the former alone.
+        """
+        return self.known_motions.unknown
 
     @property
     def certified(self) -> bool:
@@ -394,7 +412,7 @@ class Result(Recorded, Tabular):
             dof=self.degrees_of_freedom,
             notes=self.notes,
             **dict(contact_record(self.contact)),
-            **dict(solution_record(self.contact, self.solution)) | {"rotations": self.rotations},
+            **dict(solution_record(self.contact, self.solution, self.known_motions)),
             **dict(footprint_record(self.footprint)),
             holds=self.holds,
             accuracy=self.accuracy,

@@ -10,18 +10,19 @@ from bemcontact import compilation
 from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.singularities import Singularity
 from bemcontact.analysis.diagnostics import diagnostics, sides_of_one_body
+from bemcontact.analysis.held_motions import MovingBody
 from bemcontact.analysis.penetration import misfit
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import NO_MESH, Accuracy
 from bemcontact.assessment.certificate import CertificateKind, certify
 from bemcontact.assessment.footprint import footprint
 from bemcontact.assessment.residual import residuals
-from bemcontact.bem.body_motions import rotations
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.condense import Condensation, boundary_state
 from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.checks.arguments import ensure_callable, shown
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.known_motions import KnownMotions
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import Issue, ProblemError
@@ -321,7 +322,7 @@ def assessed(
     boundary: BoundaryState | None = None,
 ) -> Result:
     """Recover the boundary of a solution of a prepared problem, unless it is given, and assess both."""
-    contact, condensation = prepared.contact, prepared.condensation
+    contact, condensation, accuracy = prepared.contact, prepared.condensation, prepared.accuracy
     if condensation is not None and boundary is None:
         with watch.stage("recovery"):
             boundary = boundary_state(condensation, solution.pressure, solution.rigid_amplitudes)
@@ -335,11 +336,15 @@ def assessed(
                 deepest, said = misfit(gaps, condensation.body, contact, solution, where, prepared.accuracy.infinite)
             body = None if condensation is None else condensation.body
             said += tuple(diagnostics(contact, solution, where, body, met=prepared.accuracy.met is True))
+        motions = KnownMotions.of(contact, solution)
+        if boundary is not None and condensation is not None:
+            solved = certificate.kind is not CertificateKind.NOT_A_SOLUTION
+            moving = MovingBody.of(condensation, boundary, solution, solved=solved)
+            motions, accuracy = moving.known, moving.judged(accuracy)
         if condensation is not None and not certificate.certified:
             said += tuple(sides_of_one_body(condensation.body.problem))
         notes = (*contact.notes, *solution.notes, *said)
     gap, pressure = contact.initial_gap + solution.displacement, solution.pressure
-    amplitudes = solution.rigid_amplitudes
     by_point = weights is Weights.TRIBUTARY
     weighted = pressure * contact.weights if by_point else pressure @ contact.weight_matrix(weights)
     return Result(
@@ -353,14 +358,12 @@ def assessed(
         footprint=where,
         penetration=deepest,
         boundary=boundary,
-        rotations=contact.rotations(amplitudes)
-        if condensation is None or boundary is None
-        else rotations(condensation.body, amplitudes, boundary.displacement),
+        known_motions=motions,
         degrees_of_freedom=None if condensation is None else condensation.body.mesh.degrees_of_freedom,
         notes=notes,
         seconds=watch.seconds,
         starts=searches,
-        accuracy=prepared.accuracy,
+        accuracy=accuracy,
     )
 
 

@@ -3,13 +3,13 @@
 The direct solution of the complementarity problem is the reference; it has no objective, and so no weights.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 
-from bemcontact.assessment.certificate import NOT_SOLVED
+from bemcontact.assessment.certificate import NOT_SOLVED, Certificate
 from bemcontact.assessment.contender import (
     OUTCOMES,
     Attempt,
@@ -22,6 +22,7 @@ from bemcontact.assessment.contender import (
 )
 from bemcontact.assessment.matrices import WeightedCompliance, condition, weighted_compliance
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.known_motions import KnownMotions
 from bemcontact.contact.record import ContactRecord, contact_record
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.options import Weights
@@ -161,19 +162,28 @@ class Comparison(Recorded, Tabular):
 
 
 def comparison(
-    contact: CondensedContact, reference: Attempt, attempts: Sequence[Attempt], *, infinite: Sequence[str] = ()
+    contact: CondensedContact,
+    reference: Attempt,
+    attempts: Sequence[Attempt],
+    *,
+    infinite: Sequence[str] = (),
+    motions: Callable[[ContactSolution, Certificate], KnownMotions] | None = None,
 ) -> Comparison:
     """Assess the solutions of formulations, without trust in a solver, and put them side by side.
 
-    The reference is the attempt of the direct solver. No peak is stated if it is known to be infinite. `ProblemError`
-    if the problem does not carry the weights asked for.
+    The reference is the attempt of the direct solver. No peak is stated if it is known to be infinite. `motions` gives
+    what is known of the free motions of a solution, if that is more than the contact points tell. `ProblemError` if the
+    problem does not carry the weights asked for.
     """
+    motions = motions or (lambda solution, _: KnownMotions.of(contact, solution))
     asked = [item.options.weights for item in attempts if item.options.uses("weights")]
     weights = [*dict.fromkeys([Weights.TRIBUTARY, *asked])]
     penalties = tuple(dict.fromkeys(item.options.penalty for item in attempts if item.options.uses("penalty")))
     matrices = {item: weighted_compliance(contact, item) for item in weights}
     assessments = [
-        None if item.solution is None else assess(contact, item.solution, weights, penalties, infinite=infinite)
+        None
+        if item.solution is None
+        else assess(contact, item.solution, weights, penalties, infinite=infinite, motions=motions)
         for item in (reference, *attempts)
     ]
     direct, *contenders = (

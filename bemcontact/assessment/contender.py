@@ -1,6 +1,6 @@
 """One formulation in a comparison: its attempt, the assessment of its solution, and the verdict on it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -9,6 +9,7 @@ from bemcontact.assessment.footprint import Footprint, FootprintRecord, footprin
 from bemcontact.assessment.matrices import WeightedCompliance
 from bemcontact.assessment.residual import Objectives, Residuals, objectives, residuals
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.known_motions import KnownMotions
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.record import SolutionRecord, solution_record
 from bemcontact.contact.solution import ContactSolution, Status
@@ -223,6 +224,8 @@ class Assessment:
 
     solution: ContactSolution
     """What is assessed."""
+    motions: KnownMotions
+    """What is known of its free motions."""
     objectives: tuple[Objectives, ...]
     """Objectives with each of the weights of the comparison, in their order."""
     residuals: Residuals
@@ -327,7 +330,7 @@ def contender_record(contact: CondensedContact, contender: Contender) -> Contend
 def _answer_record(contact: CondensedContact, assessment: Assessment) -> AnswerRecord:
     """Describe a solution and its assessment."""
     return AnswerRecord(
-        **dict(solution_record(contact, assessment.solution)),
+        **dict(solution_record(contact, assessment.solution, assessment.motions)),
         **dict(footprint_record(assessment.footprint)),
         notes=assessment.solution.notes,
         objectives=assessment.objectives,
@@ -343,17 +346,22 @@ def assess(
     penalties: tuple[float, ...],
     *,
     infinite: Sequence[str] = (),
+    motions: Callable[[ContactSolution, Certificate], KnownMotions],
 ) -> Assessment:
     """Recompute everything of a solution; there is no peak if that of a zone is known to be infinite.
+
+    `motions` gives what is known of the free motions of a solution.
 
     `ProblemError` if the problem does not carry one of the weights.
     """
     recomputed = residuals(contact, solution)
+    certificate = certify(contact, solution, recomputed)
     return Assessment(
         solution=solution,
+        motions=motions(solution, certificate),
         objectives=tuple(objectives(contact, solution, item, penalties) for item in weights),
         residuals=recomputed,
-        certificate=certify(contact, solution, recomputed),
+        certificate=certificate,
         footprint=footprint(contact, solution, infinite=infinite),
         peak=float(solution.pressure.max(initial=0.0)) / contact.scales.pressure,
     )

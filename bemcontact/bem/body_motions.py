@@ -19,11 +19,6 @@ def known_arms(body: Body) -> Array | None:
     return None if any(turning[motion] for motion, _ in _of_elastic_contacts(body)) else body.seen.arms
 
 
-def rotations(body: Body, amplitudes: Array, displacement: Array) -> Array:
-    """Angle (k,) [rad] of each free motion, zero in a translation, from amplitudes and displacement as of `amounts`."""
-    return np.where(np.isfinite(body.seen.arms), amounts(body, amplitudes, displacement), 0.0)
-
-
 def amounts(body: Body, amplitudes: Array, displacement: Array) -> Array:
     """Angle [rad] of each free rotation and length [L] of each translation (k,).
 

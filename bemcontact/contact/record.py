@@ -3,8 +3,9 @@
 import numpy as np
 
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.known_motions import KnownMotions
 from bemcontact.contact.solution import ContactSolution, LocalSearch, Status, Trace
-from bemcontact.serialization import Pair, Pairs, Record, Vector
+from bemcontact.serialization import Gappy, Pair, Pairs, Record, Vector
 
 
 class UnitsRecord(Record):
@@ -83,10 +84,10 @@ class ToolRecord(Record):
     """Name in the problem."""
     point: Pair
     """Point (x, y) about which the tool turns, and about which moments are [L]."""
-    displacement: Pair
-    """Displacement (x, y) of that point [L]."""
-    rotation: float
-    """Rotation in radians, counterclockwise."""
+    displacement: Pair | None
+    """Displacement (x, y) of that point [L]; null if it is not known how far the tool moves."""
+    rotation: float | None
+    """Rotation in radians, counterclockwise; null if it is not known how far the tool turns."""
     force_of_body: Pair
     """Force (x, y) of the body on the tool, per thickness [p L]."""
     moment_of_body: float
@@ -107,14 +108,20 @@ class SolutionRecord(Record):
     rigid_amplitudes: Vector
     """Amplitude of each free rigid motion, those of the body first, then those of tools [L]: the displacement along a
     translation; for a rotation, the displacement at a reference distance from its center; `rotations` has its angle.
-    Where elastic bodies touch, they are those of one beside the other."""
-    rotations: Vector | None
+    Where elastic bodies touch, they are those of one beside the other. They belong to the displacements, also where the
+    amount is not known: see `unknown_motions`."""
+    rotations: Gappy | None
     """Angle of each free rigid motion, in radians and in the sense of its name, which is counterclockwise for a body or
-    a tool that turns alone, so that clockwise is negative; zero in a translation; null if unknown. That of a body that
-    touches elastic ones is the mean rotation of its boundary; a comparison has it in its error bars only.
-    Displacements are small in linear elasticity: the angle is the displacement over the distance from the center."""
+    a tool that turns alone, so that clockwise is negative; zero in a translation; null where the amount is not known.
+    That of a body that touches elastic ones is the mean rotation of its boundary; null for a condensed problem of such
+    bodies. Displacements are small in linear elasticity: the angle is the displacement over the distance from the
+    center."""
+    unknown_motions: tuple[str, ...]
+    """Names of the free rigid motions whose amount is not known: contact leaves them open, or only slopes and levers as
+    drawn hold them, which move with the body; of a condensed problem the former alone. They have no rotation and no
+    error bar, and their amplitudes are one state of many."""
     undetermined: tuple[str, ...]
-    """Names of the free rigid motions that contact leaves open; their amplitudes are chosen by a rule."""
+    """Names of those that contact leaves open; their amplitudes are chosen by a rule."""
     pressure: Vector
     """Normal traction per undeformed length, positive in compression [p]."""
     gap: Vector
@@ -135,13 +142,14 @@ class SolutionRecord(Record):
     """Rigid surfaces that are displaced or loaded; empty if all are fixed."""
 
 
-def solution_record(contact: CondensedContact, solution: ContactSolution) -> SolutionRecord:
-    """Describe a solution of a condensed problem."""
+def solution_record(contact: CondensedContact, solution: ContactSolution, motions: KnownMotions) -> SolutionRecord:
+    """Describe a solution of a condensed problem, and what is known of its free motions."""
     return SolutionRecord(
         solver=solution.solver,
         status=solution.status,
         rigid_amplitudes=solution.rigid_amplitudes,
-        rotations=contact.rotations(solution.rigid_amplitudes),
+        rotations=motions.rotations,
+        unknown_motions=motions.unknown,
         undetermined=solution.undetermined,
         pressure=solution.pressure,
         gap=contact.initial_gap + solution.displacement,
@@ -151,31 +159,32 @@ def solution_record(contact: CondensedContact, solution: ContactSolution) -> Sol
         search=solution.search,
         history=solution.history,
         convexity=solution.smallest_eigenvalue,
-        tools=_tool_records(contact, solution),
+        tools=_tool_records(contact, solution, motions),
     )
 
 
-def _tool_records(contact: CondensedContact, solution: ContactSolution) -> list[ToolRecord]:
+def _tool_records(contact: CondensedContact, solution: ContactSolution, motions: KnownMotions) -> list[ToolRecord]:
     """Describe where the tools are in a solution, and with what force the body presses on them."""
     tools = contact.tools
     return [
         ToolRecord(
             name=name,
             point=point,
-            displacement=(x, y),
-            rotation=rotation,
+            displacement=(x, y) if known[0] and known[1] else None,
+            rotation=rotation if known[2] else None,
             force_of_body=(fx, fy),
             moment_of_body=moment,
             free=(free[0], free[1], free[2]),
             zones=tuple(contact.zone_names[i] for i in np.unique(contact.zone[moved.any(axis=1)])),
         )
-        for name, moved, point, (x, y, rotation), (fx, fy, moment), free in zip(
+        for name, moved, point, (x, y, rotation), (fx, fy, moment), free, known in zip(
             tools.names,
             np.split(tools.motions, len(tools.names), axis=1) if tools.names else (),
             tools.point.tolist(),
             tools.displacement(solution.rigid_amplitudes).tolist(),
             contact.tool_reactions(solution.pressure).tolist(),
             tools.free.reshape(-1, 3).tolist(),
+            motions.tools.tolist(),
             strict=True,
         )
     ]

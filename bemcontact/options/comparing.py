@@ -6,6 +6,7 @@ from itertools import product
 from typing import Any, Unpack, cast
 
 from bemcontact.checks.arguments import shown
+from bemcontact.checks.keywords import refusing_unknown
 from bemcontact.errors import OptionError
 from bemcontact.options.declaration import (
     declared,
@@ -19,6 +20,7 @@ from bemcontact.options.solving import COMPARED, ComparisonKeywords, Formulation
 
 
 @documented
+@refusing_unknown(ensure_known)
 @dataclass(frozen=True, kw_only=True)
 class ComparisonOptions:
     """What is compared with the direct solution: each formulation with all weights, QP2 with all penalties.
@@ -72,7 +74,6 @@ class ComparisonOptions:
         **options: Unpack[ComparisonKeywords],
     ) -> "ComparisonOptions":
         """Make options; unlike the constructor, it is typed for names as texts and for single items."""
-        ensure_known(options, cls.__dataclass_fields__)
         given = {"formulations": formulations, "weights": weights, "penalties": penalties, **options}
         return cls(**cast(dict[str, Any], given))
 

@@ -9,6 +9,7 @@ from typing import Any, TypeVar, cast
 
 from bemcontact.checks.arguments import LARGEST_COUNT, shown, whole_number
 from bemcontact.checks.docstrings import docstring
+from bemcontact.checks.keywords import unknown_option
 from bemcontact.errors import OptionError, ProblemError
 
 Name = TypeVar("Name", bound=StrEnum)
@@ -126,9 +127,7 @@ def ensure_known(options: Iterable[str], known: Collection[str]) -> None:
         if name not in known:
             word = str(name).strip("-").lower().replace("_", "-")
             meant = [own for option, words in MEANT.items() if word in words and (own := _argument(option)) in known]
-            meant = meant or get_close_matches(str(name), [*known], n=1)
-            known_words = f"did you mean '{meant[0]}'?" if meant else f"choose from {', '.join(known)}"
-            raise OptionError(f"there is no option '{name}'; {known_words}")
+            raise unknown_option(name, known, meant or get_close_matches(str(name), [*known], n=1))
 
 
 def _argument(option: str) -> str:

@@ -8,6 +8,7 @@ from itertools import chain
 from typing import Any, Protocol, TypedDict, Unpack, cast, runtime_checkable
 
 from bemcontact.checks.arguments import real_number, shown
+from bemcontact.checks.keywords import refusing_unknown
 from bemcontact.errors import OptionError, ProblemError
 from bemcontact.options.asking import AskingKeywords
 from bemcontact.options.declaration import STARTS, declared, documented, ensure_known, ensure_whole_fields, named
@@ -143,6 +144,7 @@ class ComparingKeywords(ComparisonKeywords, AskingKeywords, total=False):
 
 
 @documented
+@refusing_unknown(ensure_known)
 @dataclass(frozen=True, kw_only=True)
 class SolveOptions:
     """How a contact problem is solved.
@@ -240,7 +242,6 @@ class SolveOptions:
         **options: Unpack[SolveKeywords],
     ) -> "SolveOptions":
         """Make options; unlike the constructor, it is typed for names as texts."""
-        ensure_known(options, cls.__dataclass_fields__)
         return cls(**cast(dict[str, Any], {"formulation": formulation, "weights": weights, **options}))
 
     @property

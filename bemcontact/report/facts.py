@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -45,6 +45,10 @@ MOST_FIGURES = 10
 """Figures of the ends of a contact far from the origin; five tell all others apart."""
 TURNS, NEARLY = "rotation ", "nearly a translation"
 """Words in the name of a free rotation, and in that of one whose center is far away."""
+NOT_KNOWN = "not known; only slopes and levers as drawn hold it, which move with the body"
+"""Words for the angle of a body that turns on and on."""
+UNKNOWN_AMOUNT = "an amount that is not known"
+"""Words for a motion of a tool that nothing determines."""
 TRANSLATIONS = "translation along (1, 0)", "translation along (0, 1)"
 """Names of the free motions of a body that only contact holds."""
 
@@ -117,7 +121,8 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
             yield "Intensity", f"of {bar['zone']}: K = {value} in {bar['note']} at {place}"
     for bar in bars_of(record, "displacement"):
         place = bar["at"] and f", at {vector(bar['at'], units.length, scale=size)}"
-        yield "Displacement", f"{with_unit(with_bar(bar['value'], bar['bar']), units.length)} at most{place or ''}"
+        largest = f"{largest_displacement(bar, units)} at most{place or ''}"
+        yield "Displacement", bar["note"] if bar["value"] is None else largest
     forces, sides = zone_forces(record, units), record["sides"]
     if not sides:
         force, error = _force(record["resultant"], record, None, units), size * sum(force_errors(record) or (0.0,))
@@ -127,14 +132,34 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
         yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
     for zone, written in forces.items() if len(forces) > 1 or sides else ():
         yield "Resultant", f"of {zone}{f' on {sides[zone][0]}' if sides else ''}: {written}"
-    for j, name in enumerate(record["motion_names"]):
-        if name.startswith(TURNS) and " of the tool " not in name and NEARLY not in name:
-            yield "Rotation", f"{_in_sense(name, record, j).removeprefix(TURNS)}{_angle(record, j)}"
+    yield from rotations(record)
     for tool in record["tools"]:
         yield "Tool", _tool(record, tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
     written = (f"{name.replace('_', ' ')} {value + 0.0:.1e}" for name, value in residuals if value is not None)
     yield "Residuals", ", ".join(written)
+
+
+def largest_displacement(bar: JsonObject, units: Units) -> str:
+    """Write the largest displacement from its error bar, or that it is not known."""
+    return "not known" if bar["value"] is None else with_unit(with_bar(bar["value"], bar["bar"]), units.length)
+
+
+def rotations(record: JsonObject) -> Iterator[tuple[str, str]]:
+    """Name and angle of each free rotation of a body."""
+    for j, name in enumerate(record["motion_names"]):
+        if name.startswith(TURNS) and " of the tool " not in name and NEARLY not in name:
+            yield "Rotation", f"{_in_sense(name, record, j).removeprefix(TURNS)}{_angle(record, j)}"
+
+
+def rotations_of_cases(records: Mapping[str, JsonObject]) -> Iterator[tuple[str, str]]:
+    """Load case and angle of each free rotation of a body; of one that is the same in all, no case is named."""
+    told = [(case, words) for case, record in records.items() for _, words in rotations(record)]
+    count = Counter(words for _, words in told)
+    for case, words in told:
+        if count[words] < len(records) or len(records) == 1:
+            yield case, words
+    yield from (("", words) for words, times in count.items() if times == len(records) > 1)
 
 
 def _gap_left(record: JsonObject, units: Units) -> str:
@@ -188,16 +213,17 @@ def _interval_errors(record: JsonObject) -> Iterator[tuple[float | None, float |
 
 
 def _angle(record: JsonObject, motion: int) -> str:
-    """Angle of a free rotation in its sense; nothing where the unit is not known."""
-    if not record["intervals"]:
+    """Angle of a free rotation in its sense, or why it is not known; nothing where its unit is not known."""
+    name = record["motion_names"][motion]
+    if not record["intervals"] or name in record["undetermined"]:
         return ": not determined"
+    if name in record["unknown_motions"]:
+        return f": {NOT_KNOWN}"
     if record["rotations"] is None:
         return ""
     if _stays(record, motion):
         return ": 0"
-    angle, name = abs(record["rotations"][motion]), record["motion_names"][motion]
-    if name in record["undetermined"]:
-        return f": not determined; chosen is {with_unit(number(angle), 'rad')}"
+    angle = abs(record["rotations"][motion])
     return f": {with_unit(with_bar(angle, _bar_of_motion(record, 'rotation', name)), 'rad')}"
 
 
@@ -221,8 +247,10 @@ def _bar_of_motion(record: JsonObject, quantity: str, mover: str) -> float | Non
 
 
 def _in_sense(name: str, record: JsonObject, motion: int) -> str:
-    """Name of a free motion, with the sense in which it turns."""
+    """Name of a free motion, with the sense in which it turns; without one where the amount is not known."""
     angles = record["rotations"]
+    if name in record["unknown_motions"]:
+        return re.sub(r"(counter)?clockwise ", "", name)
     if angles is None or not angles[motion] < 0 or _stays(record, motion):
         return name
     return re.sub(r"(counter)?clockwise", lambda sense: "clockwise" if sense[1] else "counterclockwise", name)
@@ -230,12 +258,15 @@ def _in_sense(name: str, record: JsonObject, motion: int) -> str:
 
 def _tool(record: JsonObject, tool: JsonObject, size: float, pressed: float, moves: float, units: Units) -> str:
     """Displacement of a tool, and the force and moment of the body on it."""
-    bar = _bar_of_motion(record, "motion", tool["name"])
-    error = None if bar is None else bar * float(np.hypot(*tool["displacement"]))
-    moved = vector_with_error(tool["displacement"], error, units.length, moves)
-    turn = zero_if_negligible(tool["rotation"] * size, moves) / (size or 1.0)
-    turn = turn if not tool["free"][2] or abs(turn) > _least_angle(record) else 0.0
-    turned = with_unit(with_bar(turn, _bar_of_motion(record, "rotation", tool["name"])), "rad")
+    moved, turned = UNKNOWN_AMOUNT, UNKNOWN_AMOUNT
+    if tool["displacement"] is not None:
+        bar = _bar_of_motion(record, "motion", tool["name"])
+        error = None if bar is None else bar * float(np.hypot(*tool["displacement"]))
+        moved = vector_with_error(tool["displacement"], error, units.length, moves)
+    if tool["rotation"] is not None:
+        turn = zero_if_negligible(tool["rotation"] * size, moves) / (size or 1.0)
+        turn = turn if not tool["free"][2] or abs(turn) > _least_angle(record) else 0.0
+        turned = with_unit(with_bar(turn, _bar_of_motion(record, "rotation", tool["name"])), "rad")
     components = zip(tool["force_of_body"], tool["free"][:2], strict=True)
     is_load = all(free or not zero_if_negligible(component, pressed) for component, free in components)
     errors = [force_errors(record, zone) for zone in tool["zones"]]

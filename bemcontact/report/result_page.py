@@ -20,10 +20,12 @@ from bemcontact.report.facts import (
     coordinate_size,
     facts,
     force_errors,
+    largest_displacement,
     peak_of,
     peak_place,
     pressed_by,
     resolved_size,
+    rotations_of_cases,
     small,
     total_force,
 )
@@ -99,6 +101,7 @@ def render(
         cases=[_case(name, result, units) for name, result in cases.items()] if not alone else [],
         zones=[(name, row) for name, result in cases.items() for row in zone_rows(result.to_dict(), units)],
         intervals=[(name, row) for name, result in cases.items() for row in interval_rows(result.to_dict(), units)],
+        rotations=[] if alone else [*rotations_of_cases({name: result.to_dict() for name, result in cases.items()})],
         envelope=[*_envelope(cases, units)] if not alone else [],
         bars=[*accuracy_rows(alone["accuracy"], units)] if alone else [],
         bars_are=BARS_ARE,
@@ -135,7 +138,7 @@ def _headline(record: JsonObject, units: Units) -> Iterator[tuple[str, str, str]
     yield from _forces(record, units)
     for bar in bars_of(record, "displacement"):
         where = bar["at"] and f"at {vector(bar['at'], units.length, scale=coordinate_size(record))}"
-        yield "Largest displacement", with_unit(with_bar(bar["value"], bar["bar"]), units.length), where or ""
+        yield "Largest displacement", largest_displacement(bar, units), where or ""
 
 
 def _forces(record: JsonObject, units: Units) -> Iterator[tuple[str, str, str]]:

@@ -39,6 +39,8 @@ ERRORS = (
     "Numbers after ± are estimated errors, from the change of each number when every element is cut in two. They are "
     "not proved."
 )
+UNKNOWN = "not known"
+"""Text for the amount of a motion that nothing determines."""
 
 
 def study_verdicts(study: StudyTable) -> tuple[Verdict, Verdict]:
@@ -163,8 +165,10 @@ def _cells(study: StudyTable, most: int) -> Iterator[dict[str, Any]]:
             "status": str(row.status),
             "quality": QUALITY[row.status],
             "mesh": NOTHING if row.mesh_error is None else error_percent(row.mesh_error),
-            "outputs": [reading_in_words(row.reading(name)) for name in study.columns],
-            "message": sentence_case(row.message),
+            "outputs": [
+                UNKNOWN if study.unknown(row, name) else reading_in_words(row.reading(name)) for name in study.columns
+            ],
+            "message": sentence_case(study.message(row)),
         }
 
 
@@ -213,7 +217,8 @@ def _range_of(study: StudyTable, column: str) -> tuple[str, str, str, str]:
     unit = unit_of_output(column, study.units)
     rows = [row for row in study.rows if row.holds is not False and row.reading(column).value is not None]
     if not rows:
-        return NOTHING, "", NOTHING, ""
+        word = UNKNOWN if any(study.unknown(row, column) for row in study.rows) else NOTHING
+        return word, "", word, ""
     values = [float(f"{row.reading(column).value:.9g}") for row in rows]  # of equal ones the first, not by round-off
     ends = (rows[values.index(pick(values))] for pick in (min, max))
     (low, at_low), (high, at_high) = (

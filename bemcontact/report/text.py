@@ -16,7 +16,7 @@ from bemcontact.assessment.certificate import CertificateKind
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.report.bars import mesh_in_short
 from bemcontact.report.contact_words import held_by, search_in_words, units_of
-from bemcontact.report.facts import contact_intervals, facts, forces_on_bodies, peak_of, peak_place
+from bemcontact.report.facts import contact_intervals, facts, forces_on_bodies, peak_of, peak_place, rotations_of_cases
 from bemcontact.report.formatting import seconds_in_words
 from bemcontact.report.tables import add, list_of_facts, table_of
 from bemcontact.report.verdicts import Verdict, case_verdicts, overall, result_verdicts
@@ -81,6 +81,8 @@ def cases_summary(cases: CaseResults) -> RenderableType:
         for i, (zone, force) in enumerate(forces.items()):
             touching = "\n".join(place for where, place in places if where == zone) or "nowhere"
             zones.add_row(*map(Text, (name if i == 0 else "", zone, force, touching)), style=style)
+    for case, words in rotations_of_cases({name: result.to_dict() for name, result in cases.results.items()}):
+        add(shown, "Rotation", f"{case}: {words}" if case else words)
     for note in dict.fromkeys(note for result in cases.results.values() for note in result.notes):
         names = [name for name, result in cases.results.items() if note in result.notes]
         add(shown, "Note", note if len(names) == len(cases.results) else f"{', '.join(names)}: {note}")

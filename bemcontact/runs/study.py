@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, nullcontext
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Unpack
@@ -15,7 +16,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.options import AskingKeywords
 from bemcontact.problems.problem import Problem
 from bemcontact.report.folder_kinds import STUDY, ensure_folder_writable
-from bemcontact.studies.cluster import ensure_dask, rows_by_dask
+from bemcontact.studies.cluster import connected, ensure_dask, rows_by_dask
 from bemcontact.studies.journal import JOURNAL, Journal, alone, opened, recorded, state_of
 from bemcontact.studies.outputs import chosen, of_stress
 from bemcontact.studies.plan import StudyPlan, study_plan
@@ -149,8 +150,8 @@ def study_of_plan(
         (ensure_possible or plan.ensure_possible)()
         if folder is not None and (processes or scheduler):  # what writes the folder is read while others solve
             threading.Thread(target=import_module, args=["bemcontact.report.folder"]).start()
-        with nullcontext() if folder is None else alone(folder, seen):
-            rows = _computed(plan, folder, rows, _solved(plan, tasks, processes, scheduler), progress)
+        with connected(scheduler) as client, nullcontext() if folder is None else alone(folder, seen):
+            rows = _computed(plan, folder, rows, _solved(plan, tasks, processes, client, progress), progress)
             problem = plan.problem
             done = Study(name=problem.title, units=problem.units, axes=plan.axes, outputs=outputs, rows=rows)
             if folder is not None:
@@ -159,10 +160,12 @@ def study_of_plan(
     return done
 
 
-def _solved(plan: StudyPlan, tasks: Sequence[Task], processes: Processes | None, scheduler: str | None) -> Rows:
-    """Rows of tasks as they are solved: on a cluster, by processes, or here."""
-    if scheduler is not None:
-        return rows_by_dask(plan, tasks, scheduler)
+def _solved(
+    plan: StudyPlan, tasks: Sequence[Task], processes: Processes | None, client: Any, progress: Progress | None
+) -> Rows:
+    """Rows of tasks as they are solved: on the cluster of a client, by processes, or here."""
+    if client is not None:
+        return rows_by_dask(plan, tasks, client, partial(_report, progress, STAGE))
     return rows_here(plan, tasks) if processes is None else rows_by_processes(plan, tasks, processes)
 
 

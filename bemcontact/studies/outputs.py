@@ -24,7 +24,7 @@ OF_ZONES = ("force", "force_x", "force_y", "intervals", "start", "end", "length"
 OF_INTERVALS = ("start", "end", "length")
 """Those of them that each contact interval has."""
 OF_MOVERS = ("motion", "rotation")
-"""Outputs of each tool and free motion, as ``motion.press``."""
+"""Outputs of each tool and free motion, as ``motion.press``; ``rotation.block`` has those of a body."""
 FREE = ("translation", "rotation")
 """First words of the free motions."""
 TURNS, NEARLY = "rotation ", "nearly a translation"
@@ -124,21 +124,26 @@ def _of_bars(result: Result) -> Iterator[tuple[str, Reading]]:
     for bar in result.accuracy.bars:
         if bar.quantity == "displacement":
             yield "displacement", _of_bar(bar)
-        elif bar.quantity in (*OF_MOVERS, "intensity") and bar.value is not None:
+        elif bar.quantity in OF_MOVERS or (bar.quantity == "intensity" and bar.value is not None):
             yield f"{bar.quantity}.{bar.zone or _without_center(bar.mover or '')}", _of_bar(bar)
 
 
 def _of_rotations(result: Result) -> Iterator[tuple[str, Reading]]:
-    """Free rotations of bodies without their errors; zero where one is round-off, which has no error bar."""
+    """Free rotations of bodies without their errors; zero where one is round-off, which has no error bar.
+
+    There is no value where the amount is not known.
+    """
     contact, pressure, angles = result.contact, result.solution.pressure, result.rotations
-    if angles is None or not result.footprint.intervals:
-        return  # nothing determines them
-    least = angle_of_round_off(contact.points, contact.normals, pressure > ROUND_OFF * pressure.max())
-    least = max(least, ROUND_OFF * contact.scales.displacement / (float(np.abs(contact.points).max()) or 1.0))
+    if angles is None:
+        return
+    least = ROUND_OFF * contact.scales.displacement / (float(np.abs(contact.points).max()) or 1.0)
+    if result.footprint.intervals:
+        pressed = pressure > ROUND_OFF * pressure.max()
+        least = max(least, angle_of_round_off(contact.points, contact.normals, pressed))
     for name, angle in zip(contact.motion_names, angles.tolist(), strict=True):
         turns = name.startswith(TURNS) and " of the tool " not in name and NEARLY not in name
-        if turns and name not in result.solution.undetermined:
-            yield f"rotation.{_without_center(name)}", Reading(value=angle if abs(angle) > least else 0.0)
+        if turns:
+            yield f"rotation.{_without_center(name)}", Reading(value=0.0 if abs(angle) <= least else angle)
 
 
 def _without_center(mover: str) -> str:
@@ -193,8 +198,8 @@ def chosen(output: str | Sequence[str] | None, problem: Problem) -> tuple[str, .
             _ensure_of_zone(quantity, owner, problem)
         elif point and owner.startswith(FREE):
             _ensure_of_bodies(name, owner, problem)
-        elif point and owner not in problem.tools:
-            unknown = unknown_word("tool", owner, problem.tools)
+        elif point and owner not in (movers := [*problem.tools, *(part.name for part in problem.parts if part.name)]):
+            unknown = unknown_word("tool or body" if problem.several else "tool", owner, movers)
             every = "" if unknown.endswith("?") else f"; {quantity} has a column for each tool and each free motion"
             raise OptionError(f"output {name}: {unknown}{every}")
     return tuple(dict.fromkeys(part for name in names for part in ALL_OF.get(name, (name,))))
@@ -243,6 +248,9 @@ def columns_of(outputs: Sequence[str], present: Sequence[str]) -> tuple[str, ...
 
 
 def _owned(column: str, output: str) -> bool:
-    """Whether a column is an output of a zone or mover, or of a further interval."""
-    quantity, _, _ = column.partition(".")
-    return quantity == output or ("." in output and column.startswith(f"{output}["))
+    """Whether a column is an output of a zone or mover, of a further interval, or of a free motion of a body."""
+    (quantity, _, owner), (asked, point, name) = column.partition("."), output.partition(".")
+    if not point:
+        return quantity == asked
+    of_body = quantity == asked and quantity in OF_MOVERS and f"the body '{name}'" in owner
+    return of_body or column.startswith(f"{output}[")

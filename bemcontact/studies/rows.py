@@ -43,6 +43,8 @@ class MemberRow(Leaf):
     """Why the member does not hold, or has no peak, and what its error bars do not include, in sentences."""
     outputs: dict[str, Reading]
     """Outputs by name; none if the member failed."""
+    stress: str = ""
+    """Where stress is infinite; empty if it is finite, or if the largest stresses were not asked for."""
 
     @property
     def holds(self) -> bool | None:
@@ -73,17 +75,16 @@ def row_of(number: int, values: Mapping[str, Any], result: Result, *, stresses: 
         certified=result.certified,
         met=accuracy.met,
         mesh_error=float(accuracy.worst) if known else None,
-        message=_joined(
-            _joined(_message(status, result), _without_peak(result)),
-            _joined(_infinite_stress(result) if stresses else "", _beyond_bars(result)),
-        ),
+        message=in_one_message(_message(status, result), _without_peak(result), _beyond_bars(result)),
+        stress=_infinite_stress(result) if stresses else "",
         outputs=readings(result, stresses=stresses),
     )
 
 
-def _joined(message: str, more: str) -> str:
-    """Two messages, each of which may be empty."""
-    return f"{message.removesuffix('.')}; {more}" if message and more else message or more
+def in_one_message(*messages: str) -> str:
+    """Messages as one; each of them may be empty."""
+    *before, last = [message for message in messages if message] or [""]
+    return "; ".join([*(message.removesuffix(".") for message in before), last])
 
 
 def _message(status: MemberStatus, result: Result) -> str:
@@ -142,4 +143,5 @@ def row_from(record: Mapping[str, Any], number: int, values: Mapping[str, Any]) 
     """Read a row back from its JSON, as the member of a number with these values."""
     outputs = {name: Reading(**item) for name, item in record["outputs"].items()}
     kept = {key: record[key] for key in ("equations", "certified", "met", "mesh_error", "message")}
+    kept["stress"] = record.get("stress", "")
     return MemberRow(number=number, values=dict(values), status=MemberStatus(record["status"]), outputs=outputs, **kept)

@@ -17,8 +17,8 @@ from bemcontact.contact.record import UnitsRecord
 from bemcontact.problems.units import Units
 from bemcontact.serialization import Leaf, Record, Recorded
 from bemcontact.studies.axes import Axis
-from bemcontact.studies.outputs import columns_of
-from bemcontact.studies.rows import MemberRow, MemberStatus
+from bemcontact.studies.outputs import OF_MOVERS, columns_of
+from bemcontact.studies.rows import MemberRow, MemberStatus, in_one_message
 from bemcontact.version import __version__
 from bemcontact.views import Tabular
 
@@ -101,6 +101,18 @@ class StudyTable(Recorded, Tabular):
         present = dict.fromkeys(name for row in self.rows for name in row.outputs)
         return columns_of(self.outputs, [*present])
 
+    def message(self, row: MemberRow) -> str:
+        """What is to be known of a member and the outputs in the table, in sentences; of others nothing is said."""
+        unknown = [name for name in self.columns if self.unknown(row, name)]
+        words = f"{' and '.join(unknown)} {'is' if len(unknown) == 1 else 'are'} not known" if unknown else ""
+        return in_one_message(row.message, row.stress if "von_mises" in self.outputs else "", words)
+
+    @staticmethod
+    def unknown(row: MemberRow, column: str) -> bool:
+        """Whether the amount of a motion or a rotation of a member is not known."""
+        moved = column.partition(".")[0] in OF_MOVERS and column in row.outputs
+        return moved and row.outputs[column].value is None
+
     def table(self) -> dict[str, list[Any]]:
         """Return the table as a list for each column, ready for a data frame.
 
@@ -122,7 +134,7 @@ class StudyTable(Recorded, Tabular):
             readings = [row.reading(name) for row in self.rows]
             columns[name] = [item.value for item in readings]
             columns[f"{name}_error"] = [item.error for item in readings]
-        columns["message"] = [row.message for row in self.rows]
+        columns["message"] = [*map(self.message, self.rows)]
         return columns
 
     def to_csv(self) -> str:

@@ -1134,6 +1134,22 @@ def test_a_body_moves_with_the_elastic_one_that_it_stays_on(exchanged):
     assert result.contact.rotations(result.solution.rigid_amplitudes) is None
 
 
+def test_a_comparison_has_the_rotations_of_elastic_bodies():
+    """What turns is seen on the boundary, not at the contact points: they were null in the JSON of a comparison."""
+    load = {"top": {"pressure": {"constant": 1.0, "x": 0.05}}}
+    bodies = {"stiff": elastic(block((-2, 2), (0, 3), (2,) * 4), load, 1e3), "base": elastic(
+        block((-2, 2), (-4, 0), (2,) * 4), HELD, 10.0
+    )}  # fmt: skip
+    tilted = problem(bodies, None, seat=["stiff/bottom", "base/top"])
+    result = bemcontact.solve(tilted)
+    (j,) = (j for j, name in enumerate(result.contact.motion_names) if "rotation" in name)
+    assert result.rotations[j] < -0.01
+    record = bemcontact.compare(tilted, "qp3").to_dict()
+    for item in (record["reference"], *record["contenders"]):
+        assert item["answer"]["rotations"][j] == pytest.approx(result.rotations[j], rel=1e-6)
+        assert item["answer"]["unknown_motions"] == []
+
+
 def test_the_error_bar_of_a_rotation_is_of_the_angle_that_is_told():
     """Blocks of equal width under an eccentric load, whose foot is held: a bar of 1 % against a mesh for 0.1 %."""
     load = {"top": {"displacement": {"x": 0}, "traction": {"y": {"constant": -1.0, "x": -0.1}}}}

@@ -1,6 +1,7 @@
 """The options of solving and comparing: keywords, uses and documentation follow the fields of one declaration."""
 
-from dataclasses import fields
+import inspect
+from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
 from typing import get_args, get_type_hints
@@ -102,3 +103,23 @@ def test_what_is_asked_of_a_solve_is_what_the_problem_states_then():
     contact = asked.contact
     with pytest.raises(bemcontact.ProblemError, match="refine is 2, but a condensed problem"):
         bemcontact.solve(contact, refine=2)
+
+
+@pytest.mark.parametrize(
+    ("options", "keyword", "words"),
+    [
+        (bemcontact.QPOptions, "by_nmba", "there is no option 'by_nmba'; did you mean 'by_numba'?"),
+        (bemcontact.QPOptions, "what", "there is no option 'what'; choose from max_iterations, feasibility_tolerance"),
+        (SolveOptions, "penalti", "there is no option 'penalti'; did you mean 'penalty'?"),
+        (SolveOptions, "method", "there is no option 'method'; did you mean 'formulation'?"),
+        (ComparisonOptions, "seeed", "there is no option 'seeed'; did you mean 'seed'?"),
+    ],
+)
+def test_classes_of_options_refuse_unknown_keywords_with_the_right_one(options, keyword, words):
+    """A `TypeError` of Python named neither. `dataclasses.replace` refuses them too; what is known stays as it is."""
+    for make in (options, partial(replace, options())):
+        with pytest.raises(OptionError) as raised:
+            make(**{keyword: 1})
+        assert str(raised.value).startswith(words)
+    assert options() == replace(options())
+    assert [*inspect.signature(options).parameters] == [item.name for item in fields(options)]

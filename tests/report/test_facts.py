@@ -2,6 +2,7 @@
 
 import re
 from decimal import Decimal
+from typing import Any
 
 import numpy as np
 import pytest
@@ -107,7 +108,19 @@ def test_a_peak_whose_error_is_not_known_says_so_wherever_it_is_written():
 
 def test_of_two_zones_one_of_which_is_infinite_the_other_has_its_peak():
     lists = dict.fromkeys(
-        ("nodes", "intervals", "tributary_lengths", "pressure", "zone", "normals", "tools", "undetermined", "gap"), ()
+        (
+            "nodes",
+            "intervals",
+            "tributary_lengths",
+            "pressure",
+            "zone",
+            "normals",
+            "tools",
+            "undetermined",
+            "unknown_motions",
+            "gap",
+        ),
+        (),
     )
     bars = (bar("peak", None, None, note="infinite at a corner"), bar("peak", 12.5, 0.01, zone="wall"))
     record = {
@@ -121,7 +134,7 @@ def test_of_two_zones_one_of_which_is_infinite_the_other_has_its_peak():
 
 
 def facts_of_forces(
-    infinite: bool, forces: list[float], rotations: tuple[float, ...] | None = (1e-15, 0.05, 0.0)
+    infinite: bool, forces: list[float], rotations: tuple[float | None, ...] | None = (1e-15, 0.05, 0.0), **other: Any
 ) -> list[tuple[str, str]]:
     """Facts of one zone with these forces along y; its peak is infinite or 1."""
     total = sum(forces)
@@ -130,7 +143,8 @@ def facts_of_forces(
         "intervals": [{"zone": "foot", "start": [0.0, 0.0], "end": [9.0, 0.0], "arc": [0.0, 9.0]}] * any(forces),
         "run": [0] * len(forces), "arc_position": [float(place) for place in range(len(forces))],
         "tributary_lengths": forces, "pressure": [1.0] * len(forces), "normals": [[0.0, 1.0]] * len(forces),
-        "forces": {"foot": (0.0, total)}, "sides": {}, "undetermined": (), "gap": [0.0] * len(forces),
+        "forces": {"foot": (0.0, total)}, "sides": {}, "undetermined": (), "unknown_motions": (),
+        "gap": [0.0] * len(forces),
         "peak": None if infinite or not any(forces) else {"pressure": 1.0, "at": [0.0, 0.0]},
         "resultant": (1e-14 * total, total), "resultant_moment": 3.0 * total,
         "motion_names": ("rotation about (1, 2)", "rotation about (3, 4)", "translation along (0, 1)"),
@@ -141,7 +155,7 @@ def facts_of_forces(
         "residuals": dict.fromkeys(("penetration", "tension", "complementarity", "equilibrium", "force_balance")),
         "accuracy": accuracy(bar("peak", None if infinite else 1.0, None, note="infinite at a corner" * infinite)),
     }  # fmt: skip
-    return [*facts(record, UNITS)]
+    return [*facts({**record, **other}, UNITS)]
 
 
 @given(st.lists(st.floats(1e-9, 1e9), min_size=1, max_size=5))
@@ -162,11 +176,27 @@ def test_a_rotation_has_an_angle():
 
 
 def test_a_rotation_that_is_not_known_has_no_amount():
+    """One that contact leaves open, and one that only slopes hold, have no number and no sense in which they turn."""
     assert rotations_of(None) == ["about (1, 2)", "about (3, 4)"]
+    names = "rotation counterclockwise about (1, 2)", "rotation about (3, 4)"
+    open_one = {"motion_names": names, "unknown_motions": names, "undetermined": names[1:]}
+    assert rotations_of((None, None), **open_one) == [
+        "about (1, 2): not known; only slopes and levers as drawn hold it, which move with the body",
+        "about (3, 4): not determined",
+    ]
 
 
-def rotations_of(rotations: tuple[float, ...] | None) -> list[str]:
-    return [words for name, words in facts_of_forces(False, [1.0], rotations) if name == "Rotation"]
+def test_a_tool_that_moves_by_an_unknown_amount_has_no_number():
+    punch = {
+        "name": "punch", "point": [0.0, 0.0], "displacement": None, "rotation": None, "force_of_body": [0.0, -1.0],
+        "moment_of_body": 0.0, "free": [True, True, True], "zones": ["foot"],
+    }  # fmt: skip
+    told = dict(facts_of_forces(False, [1.0], tools=[punch]))["Tool"]
+    assert told.startswith("punch: moves by an amount that is not known, turns by an amount that is not known; the")
+
+
+def rotations_of(rotations: tuple[float | None, ...] | None, **other: Any) -> list[str]:
+    return [words for name, words in facts_of_forces(False, [1.0], rotations, **other) if name == "Rotation"]
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ from bemcontact.assessment.certificate import HEADINGS, CertificateKind
 from bemcontact.options import ComparisonOptions, StressMeasure
 from bemcontact.report.bars import NOTHING
 from bemcontact.report.contact_words import units_of
-from bemcontact.report.facts import peak_of, total_force
+from bemcontact.report.facts import facts, peak_of, total_force
 from bemcontact.report.figures import load_cases, pictures_of, vector_graphic
 from bemcontact.report.result_page import NOT_LOOKED_AT, render
 from bemcontact.report.zones import zone_rows
@@ -140,6 +140,14 @@ def test_load_cases_have_the_largest_of_all():
         }
         most = max(own, key=own.__getitem__)
         assert f"{zone}{own[most]:.5g}{most}(" in together(text[text.index("Largest of all load cases") :])
+
+
+def test_each_load_case_has_its_own_rotation():
+    results = bemcontact.solve_cases(bemcontact.load(GALLERY / "body_between_two_tools.yaml"))
+    told = together(read(render(results, {}, None)).text).partition("Rotationsofbodiesthatcontactholds")[2]
+    for name, result in results.results.items():
+        (angle,) = (words for of, words in facts(result.to_dict(), units_of(result.contact)) if of == "Rotation")
+        assert together(f"{name}{angle}") in told
 
 
 def test_a_level_pressure_has_no_place_under_load_cases():

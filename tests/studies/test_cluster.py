@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -15,7 +15,7 @@ import pytest
 import bemcontact
 from bemcontact.errors import ProblemError
 from bemcontact.studies import cluster
-from bemcontact.studies.cluster import rows_by_dask
+from bemcontact.studies.cluster import connected, rows_by_dask
 from bemcontact.studies.plan import study_plan
 from bemcontact.studies.rows import MemberRow
 from bemcontact.studies.work import tasks_of
@@ -27,9 +27,13 @@ VARIED = {"conditions.top.pressure": [10, 20, 30], "material.young_modulus": [90
 PLAN = study_plan(CYLINDER, VARIED)
 
 
+def ignored(_: str) -> None:
+    """Takes what is said."""
+
+
 @contextmanager
-def two_workers(folder: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
-    """A scheduler and two worker processes: its address, and the workers."""
+def cluster_of(folder: Path) -> Iterator[tuple[str, Callable[[str], subprocess.Popen[bytes]]]]:
+    """A scheduler: its address, and a function that starts a worker process of a name."""
     root = str(Path(bemcontact.__file__).parents[1])
     environment = {**os.environ, "PYTHONPATH": root, "OMP_NUM_THREADS": "1"}
     run = [sys.executable, "-m", "distributed.cli.dask_scheduler"]
@@ -42,9 +46,12 @@ def two_workers(folder: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes
         deadline = time.monotonic() + 60
         while not file.is_file() and time.monotonic() < deadline:
             time.sleep(0.1)
-        workers = [subprocess.Popen([*worker, "--no-dashboard", "--name", name], **quiet) for name in ("a", "b")]
-        started += workers
-        yield json.loads(file.read_text(encoding="utf-8"))["address"], workers
+
+        def start(name: str) -> subprocess.Popen[bytes]:
+            started.append(subprocess.Popen([*worker, "--no-dashboard", "--name", name], **quiet))
+            return started[-1]
+
+        yield json.loads(file.read_text(encoding="utf-8"))["address"], start
     finally:
         for process in reversed(started):
             process.kill()
@@ -56,8 +63,9 @@ def two_workers(folder: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes
 def test_a_cluster_finds_the_same_rows_though_a_worker_is_killed(tmp_path: Path):
     expected = sorted(rows_here(PLAN, tasks_of(PLAN, [False] * len(PLAN))), key=lambda row: row.number)
     rows = list[MemberRow]()
-    with two_workers(tmp_path) as (address, workers):
-        for row in rows_by_dask(PLAN, tasks_of(PLAN, [False] * len(PLAN)), address):
+    with cluster_of(tmp_path) as (address, start), connected(address) as client:
+        workers = [start(name) for name in ("a", "b")]
+        for row in rows_by_dask(PLAN, tasks_of(PLAN, [False] * len(PLAN)), client, ignored):
             rows.append(row)
             if len(rows) == 3:
                 workers[0].send_signal(signal.SIGKILL)
@@ -66,13 +74,40 @@ def test_a_cluster_finds_the_same_rows_though_a_worker_is_killed(tmp_path: Path)
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("default")
-def test_a_scheduler_that_does_not_answer_is_an_error(monkeypatch: pytest.MonkeyPatch):
+def test_a_study_says_that_it_waits_for_workers_and_goes_on_when_there_is_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    """A scheduler without workers was waited for without a word. The first worker is started when this is said."""
+    monkeypatch.setattr(cluster, "SILENCE", 0.2)
+    said = list[str]()
+    with cluster_of(tmp_path) as (address, start):
+
+        def progress(_: str, now: str) -> None:
+            if "waits" in now and not any("waits" in line for line in said):
+                start("late")
+            said.append(now)
+
+        found = bemcontact.study(CYLINDER, {"conditions.top.pressure": [10, 20]}, scheduler=address, progress=progress)
+    words = f"waits for workers of the Dask scheduler; start one with 'dask worker {address}'"
+    assert said.index(words) == 1
+    assert said[0] == "0 of 2 members"
+    assert said[-1].startswith("2 of 2 members")
+    assert found.counts == {"holds": 2}
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+def test_a_scheduler_that_does_not_answer_is_an_error_and_leaves_no_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     monkeypatch.setattr(cluster, "PATIENCE", 1)
+    folder = tmp_path / "study"
     with pytest.raises(ProblemError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
-        next(rows_by_dask(PLAN, iter(()), "tcp://127.0.0.1:9"))
+        bemcontact.study(CYLINDER, VARIED, scheduler="tcp://127.0.0.1:9", out=folder)
+    assert not folder.exists()
 
 
 def test_without_dask_the_extra_is_named(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(cluster, "find_spec", lambda _: None)
     with pytest.raises(ProblemError, match=r"pip install 'bemcontact\[dask\]'"):
-        next(rows_by_dask(PLAN, iter(()), "tcp://127.0.0.1:9"))
+        bemcontact.study(CYLINDER, VARIED, scheduler="tcp://127.0.0.1:9")

@@ -114,6 +114,20 @@ def test_a_free_motion_of_bodies_can_be_chosen_with_the_comma_of_its_direction()
         chosen(f"rotation.rotation counterclockwise of the body '{body}x'", stack)
 
 
+def test_the_motions_of_a_body_can_be_chosen_by_its_name_as_those_of_a_tool():
+    stack = bemcontact.load(MODELS / "bodies" / "stack_of_three.yaml")
+    assert chosen("motion.top,rotation.middle", stack) == ("motion.top", "rotation.middle")
+    with pytest.raises(ProblemError, match=r"unknown tool or body 'topp'; did you mean 'top'\?"):
+        chosen("rotation.topp", stack)
+    present = [
+        "motion.translation along (1, 0) of the body 'top'", "motion.translation along (0, 1) of the body 'top'",
+        "motion.translation along (0, 1) of the body 'top layer'",
+        "rotation.rotation counterclockwise of the body 'top'",
+    ]  # fmt: skip
+    assert columns_of(["motion.top"], present) == tuple(present[:2])
+    assert columns_of(["rotation.top", "rotation.middle"], present) == (present[3], "rotation.middle")
+
+
 @pytest.mark.slow
 def test_each_output_of_a_result_can_be_chosen():
     for problem in (ZONES, TOOLS, PUNCH):

@@ -35,7 +35,8 @@ def test_a_row_says_why_it_has_no_peak():
     assert row.message == "the peak pressure is infinite in punch"
     row = row_of(0, {}, result, stresses=True)
     assert row.outputs["von_mises"].value is None
-    assert row.message.endswith("; von Mises stress grows up to an infinite one: it has no largest value")
+    assert row.message == "the peak pressure is infinite in punch"
+    assert row.stress == "von Mises stress grows up to an infinite one: it has no largest value"
 
 
 @pytest.mark.slow
@@ -43,9 +44,7 @@ def test_a_row_says_what_its_largest_stress_leaves_out():
     """Where three stops press a body, its sharp corners are elsewhere."""
     row = row_of(0, {}, bemcontact.solve(bemcontact.load(MODELS / "gallery" / "three_zones.yaml")), stresses=True)
     assert row.outputs["von_mises"].value is not None
-    assert row.message.endswith(
-        "stress is infinite at corners or edges, von_mises is the largest maximum away from them"
-    )
+    assert row.stress == "stress is infinite at corners or edges, von_mises is the largest maximum away from them"
 
 
 def test_a_row_has_the_notes_on_what_its_error_bars_do_not_include():

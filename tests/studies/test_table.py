@@ -2,6 +2,7 @@
 
 import csv
 import io
+from dataclasses import replace
 from pathlib import Path
 
 import pyarrow.parquet
@@ -64,3 +65,20 @@ def test_the_worst_status_counts_first():
     assert MIXED.counts == {"failed": 1, "holds": 2}
     assert MIXED.holds is False
     assert MIXED.record().to_dict()["counts"] == MIXED.counts
+
+
+def test_only_what_concerns_the_outputs_of_the_table_is_said():
+    """A journal keeps what a run with von_mises has found; a table of peaks has no word about infinite stress."""
+    found = replace(row(0, 1.5, peak=Reading(value=3.0), von_mises=Reading(value=5.0)), stress="stress is infinite")
+    moved = row(1, 2.5, peak=Reading(value=3.0), **{"rotation.wheel": Reading(value=None)})
+    tables = {
+        outputs: StudyTable(
+            name="s", units=Units(), axes=axes_of({"a": [1.5, 2.5]}, Units()), outputs=outputs, rows=(found, moved)
+        ).table()
+        for outputs in (("peak",), ("von_mises",), ("peak", "rotation"))
+    }
+    assert tables["peak",]["message"] == ["", ""]
+    assert tables["von_mises",]["message"] == ["stress is infinite", ""]
+    last = tables["peak", "rotation"]
+    assert last["message"] == ["", "rotation.wheel is not known"]
+    assert last["rotation.wheel"] == last["rotation.wheel_error"] == [None, None]

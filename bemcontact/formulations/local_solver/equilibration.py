@@ -18,6 +18,8 @@ OF_OBJECTIVE, OF_BOUNDS, UNDECIDED = 1e-3, 1e-6, 1e-11
 """Weights in the least-squares problem: of H and c, of the bounds, and of the factors themselves. A has weight 1."""
 OF_VARIABLE, OF_ROW = 200.0, 1000.0
 """Largest binary logarithms of the natural factors. A factor of H is a product of two factors of variables."""
+LARGEST_UNSCALED = 1e150
+"""Largest entry without scaling: sums of squares of larger ones are infinite."""
 WIDE = 49.0
 """Range of binary logarithms below which no entry can be rounding."""
 
@@ -36,8 +38,14 @@ class Scales:
 
 
 def unequilibrated(statement: Statement) -> tuple[Statement, Scales]:
-    """Return the statement unchanged, with factors of one."""
+    """Return the statement unchanged, with factors of one; `ProblemError` if squares of its entries are infinite."""
     m, n = statement.A.shape
+    for name, entries in (("H", statement.H), ("c", statement.c), ("A", statement.A)):
+        if (size := largest(entries)) > LARGEST_UNSCALED:
+            raise ProblemError(
+                f"{name} has an entry of size {size:.3g}, and squares of entries above {LARGEST_UNSCALED:g} cannot be "
+                "computed: leave out scale=False, or choose other units"
+            )
     return statement, Scales(variables=np.ones(n), rows=np.ones(m), objective=1.0)
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from bemcontact.arrays import Array
 from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import shown
+from bemcontact.checks.keywords import refusing_unknown
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
 
@@ -66,6 +67,7 @@ class LogLine(NamedTuple):
         )
 
 
+@refusing_unknown()
 @dataclass(frozen=True, kw_only=True)
 class QPOptions:
     """Options of `minimize_qp`.
@@ -86,7 +88,7 @@ class QPOptions:
     Raises
     ------
     ProblemError
-        A value is out of range or of another kind.
+        A value is out of range or of another kind, or there is no option of a name.
     """
 
     max_iterations: int | None = None

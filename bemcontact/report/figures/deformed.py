@@ -39,9 +39,9 @@ def draw_deformed(axes: Axes, result: Result, stress: StressMeasure | None = Non
     marked = "thick: in contact; dashed: undeformed"
     if stress is not None:
         marked = fill_with_stress(axes, result, stress, factor)
-    known = (bar.value for bar in result.accuracy.bars if bar.quantity == "displacement")  # as the table has it
-    most = next(known, None) or float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
-    largest = with_unit(f"{most:.3g}", plain(units_of(result.contact).length))
+    stated = [bar.value for bar in result.accuracy.bars if bar.quantity == "displacement"]  # as the table has it
+    most = stated[0] if stated else float(np.hypot(*state.displacement.reshape(-1, 2).T).max())
+    largest = "not known" if most is None else with_unit(f"{most:.3g}", plain(units_of(result.contact).length))
     title = f"deformed shape, {in_words(factor, [result])}\nlargest displacement {largest}\n{marked}"
     axes.set_title(title, loc="left", fontsize=10)
 

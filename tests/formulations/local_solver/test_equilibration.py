@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.equilibration import OF_BOUNDS, OF_OBJECTIVE, _entries, equilibrate
+from bemcontact.formulations.local_solver.minimize import minimize_qp
+from bemcontact.formulations.local_solver.result import QPOptions
 from bemcontact.formulations.local_solver.statement import Statement
 
 
@@ -138,3 +140,13 @@ def test_what_no_number_represents_is_refused(room, entry):
     wide = Statement(H=H, c=np.array([1e300, 1e-300, 1e300]), A=A, lower=np.full(6, -1e19), upper=np.full(6, 5e-324))
     with pytest.raises(ProblemError, match="too far apart"):
         equilibrate(wide, room.scaled_data)
+
+
+@pytest.mark.parametrize("name", ["H", "c", "A"])
+def test_entries_whose_squares_are_infinite_are_refused_without_scaling(name):
+    """1e290 ended in an OverflowError of Python. With scaling the same program is solved: x = 1 by its bounds."""
+    data = {"H": np.eye(1), "c": -np.ones(1), "A": np.ones((1, 1))}
+    data[name] = data[name] * 1e290
+    with pytest.raises(ProblemError, match=rf"^{name} has an entry of size 1e\+290, .* leave out scale=False"):
+        minimize_qp(*data.values(), None, [1e290 if name == "A" else 1.0], options=QPOptions(scale=False))
+    assert minimize_qp(*data.values(), bl=[1.0], bu=[1.0]).x == 1.0

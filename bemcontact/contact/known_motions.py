@@ -1,0 +1,59 @@
+"""What is known of the amounts of free motions: angles, and the motions whose amount nothing determines."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from bemcontact.arrays import Array, BoolArray, freeze_arrays
+from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.contact.solution import ContactSolution
+
+TAKES_PART = 1e-9
+"""Displacement of a tool in a motion, over the largest one in any, from which the tool takes part in it."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class KnownMotions:
+    """What is known of the free motions of a solution.
+
+    Parameters
+    ----------
+    rotations : (k,) angle of each [rad], zero in a translation, and not a number where the amount is not known; None if
+        none of them is known
+    unknown : names of those whose amount is not known
+    tools : (t, 3) whether the displacement of each tool is known along x and y, and its rotation
+    """
+
+    rotations: Array | None
+    unknown: tuple[str, ...]
+    tools: BoolArray
+
+    def __post_init__(self) -> None:
+        """Make arrays read-only."""
+        freeze_arrays(self)
+
+    @classmethod
+    def of(
+        cls,
+        contact: CondensedContact,
+        solution: ContactSolution,
+        rotations: Array | None = None,
+        held: BoolArray | None = None,
+    ) -> Self:
+        """What is known, with the angles (k,) of the boundary behind the contact points if they are computed from it.
+
+        `held` (k,) says which motions something else than slopes and levers as drawn holds: all if it is None. What
+        contact leaves open is not known, nor is anything without contact.
+        """
+        rotations = contact.rotations(solution.rigid_amplitudes) if rotations is None else rotations
+        known = np.ones(contact.free_motions, bool) if held is None else held
+        known = known & np.array([name not in solution.undetermined for name in contact.motion_names], bool)
+        known &= bool(solution.pressure.any())
+        moved = abs(contact.tools.amplitudes)
+        part = moved > TAKES_PART * moved.max(axis=1, initial=0.0, keepdims=True)
+        return cls(
+            rotations=None if rotations is None else np.where(known, rotations, np.nan),
+            unknown=tuple(name for name, is_known in zip(contact.motion_names, known, strict=True) if not is_known),
+            tools=~(part & ~known).any(axis=1).reshape(-1, 3),
+        )
