@@ -21,7 +21,8 @@ from bemcontact.analysis.moved_contact import (
     MovedContact,
     judged_to,
 )
-from bemcontact.analysis.second_solution import NO_CHANGE, SecondSolution
+from bemcontact.analysis.second_motions import NO_CHANGE, SecondMotions
+from bemcontact.analysis.second_solution import SecondSolution
 from bemcontact.arrays import Array, IntArray, indices, norm
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
@@ -71,9 +72,9 @@ def placement(
     there = replace(contact, initial_gap=contact.initial_gap + moved.change, motion_load=contact.motion_load + load)
     again = complementarity.solve(there, near=first.pressed)
     ways = ways[..., : contact.free_motions]
-    second = SecondSolution(first=first, contact=there, solution=again, free=body.seen, ways=ways)
-    (misfit, said), amplitudes = second.moves_on(), second.unknown_amplitudes
-    second = second.without_unknown()
+    motions = SecondMotions(first=first, contact=there, solution=again, free=body.seen, ways=ways)
+    second = SecondSolution(first=first, contact=there, solution=motions.without_unknown())
+    misfit, said = motions.moves_on()
     if misfit is None and nearby is None:
         misfit, changed = second.forces_changed()
         said = (*said, *changed)
@@ -82,7 +83,7 @@ def placement(
         return misfit, notes
     misfit, said = second.peaks_changed([name for name in contact.zone_names if name not in infinite], nearby)
     if misfit is None and nearby is None:
-        misfit, others = _pairs_changed(first, body, amplitudes)
+        misfit, others = _pairs_changed(first, body, motions.unknown_amplitudes)
         said = (*said, *others, *second.places_changed())
     return misfit, (*notes, *said)
 
