@@ -16,10 +16,14 @@ from bemcontact.contact.solution import ContactSolution
 from bemcontact.problems.body_surface import BodySurface
 from bemcontact.problems.conditions import Condition
 from bemcontact.problems.curves import cross
-from bemcontact.problems.surface_lines import STEEP, Polyline
+from bemcontact.problems.edge_places import curvatures, nearest_on
+from bemcontact.problems.problem import Problem
+from bemcontact.problems.surface_lines import STEEP, Closest, Polyline
 
 FLAT = (0.0, 1.0)
-"""Parts of the first side in common normals where one side is flat."""
+"""Parts of the first side in common normals that state that one side is flat, where both may be under pressure."""
+FLATTER = 0.25
+"""Curvature of one side over that of the other one, up to which contact stays on the latter as both slide."""
 
 
 class Displaced(NamedTuple):
@@ -61,9 +65,11 @@ def displaced(
         ridge = (magnitudes(face - contact.normals[own]) > ALIKE) & (along > STEEP)
         other = ~ridge & (scalar_products(there.normals, face) < SAME_FACE)
         moved, distance = of_nodes[opposite], there.gap
-        if body and body.share in FLAT and solution.pressure[own].any():
+        carried = None
+        if body and solution.pressure[own].any():
             carried = _carried_along(gaps, zone, points, contact, solution.pressure, displacement[own] - moved)
-            distance = np.where(other, there.gap, carried)
+        if carried:
+            distance = np.where(other, there.gap, carried.gap)
         beyond = distance / np.where(ridge, along, 1.0) - linear[own]
         found.motion[own] -= moved if has.all() else np.where(has[:, None], moved, gaps.tool_motion(zone, at[own]))
         tip = gaps.beside_groove(zone, at[own], magnitudes(found.motion[own]))
@@ -71,6 +77,8 @@ def displaced(
         turned = np.where(ridge[:, None], face, there.normals)
         if body:
             turned = turned + gaps.turn_of(body, places - gaps.tool_motion(zone, places), turned)
+        if carried:
+            turned = np.where((other | ridge)[:, None], turned, carried.normals)
         found.turn[own] = np.where((other | tip)[:, None], 0.0, turned - face)
         found.change[own] = np.where(grooved, 0.0, beyond)
         found.distance[own], found.other[own] = there.gap, other
@@ -86,24 +94,46 @@ def displaced(
 
 def _carried_along(
     gaps: SurfaceGaps, zone: str, points: ContactPoints, contact: CondensedContact, pressure: Array, against: Array
-) -> Array:
-    """Distance (k,) [L] of the points of a zone with a flat side, after displacements (k, 2) against the second body.
+) -> Closest | None:
+    """Distance (k,) [L] and normals (k, 2) where one side is flat, after displacements (k, 2) against the second body.
 
-    Pressure slides along on that body and takes its deformation along. So each point has the displacement of its pair,
-    not that of the place where it comes to, which may be beside all pressure. It only goes up or down the slope that
-    the body has under an unbroken contact as a whole.
+    Pressure slides along on the flat side and takes its deformation along. So each point has the displacement of its
+    pair, not that of the place where it comes to, which may be beside all pressure. It only goes up or down the slope
+    that the flat side has under an unbroken contact as a whole, and has the normal of this slope. None without a flat
+    side.
     """
     own = indices(contact.zone == contact.zone_names.index(zone))
     surface, force = gaps.surfaces[zone], (contact.weights * pressure)[own]
     assert isinstance(surface, BodySurface)
     at, pairs = contact.points[own], points.mesh.nodes[points.opposite.node[own]]
-    if surface.share == 1:  # the first side is flat: seen from the other one, a slide along it changes nothing
+    flat = _flat_side(surface, at, pairs, force)
+    if flat is None:
+        return None
+    if flat == 0:  # seen from the other side, a slide along it changes nothing
         surface, at, pairs, against = surface.other_side, pairs, at, -against
-    places, normals = at + against, surface.closest(pairs).normals
-    turn, distance = gaps.turn_of(surface, pairs, normals), surface.continued.closest(places).gap
+    places = at + against
+    turn = gaps.turn_of(surface, pairs, surface.closest(pairs).normals)
+    distance, normals = surface.continued.closest(places)
     for beside in _around_contacts(contact.run[own], force > 0):
-        distance[beside] += (places - pairs)[beside] @ (force[beside] @ turn[beside] / force[beside].sum())
-    return distance
+        mean = force[beside] @ turn[beside] / force[beside].sum()
+        distance[beside] += (places - pairs)[beside] @ mean
+        normals[beside] += mean
+    return Closest(distance, normals if flat else -normals)
+
+
+def _flat_side(surface: BodySurface, at: Array, pairs: Array, force: Array) -> int | None:
+    """Side, 0 or 1, that is flat beside the other one where points (k, 2) press on their pairs; None if neither is.
+
+    Where both are, it is the side on which the other one may slide past its round edges, as of `share`.
+    """
+    if surface.share in FLAT:
+        return int(surface.share == 0)
+    pressed = force > 0
+    first, second = (
+        float(force[pressed] @ abs(curvatures(edges, nearest_on(edges, places[pressed]))))
+        for edges, places in ((surface.first, at), (surface.edges, pairs))
+    )
+    return int(second < first) if min(first, second) < FLATTER * max(first, second) else None
 
 
 def _around_contacts(run: IntArray, pressed: BoolArray) -> Iterator[IntArray]:
@@ -183,14 +213,17 @@ def _at_nodes(gaps: SurfaceGaps, points: ContactPoints) -> Array:
 
 
 def load_after(
-    gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, moved: Displaced, least: float
-) -> Array:
+    gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, moved: Displaced, ways: Array,
+    least: float,
+) -> Array:  # fmt: skip
     """Work (j,) in all free motions, seen and unseen, of what forces gain by the motion: other levers and directions.
 
+    As drawn, forces do no work in them. So it is their virtual work at the displaced places, whose normals are turned:
+    Σ w p (n + turn)·way over all zones, and that of the loads. The `ways` (n, 2, j) are as of `ways_of_contact`.
     Pressure that balances the other levers by moving by less than a `least` part of its length may come from the mesh.
     """
     motions = body.free
-    load = _load_of_turns(gaps, body, contact, solution, moved)
+    load = np.tensordot((contact.weights * solution.pressure)[:, None] * moved.turn, ways, axes=2)
     if not len(motions):
         return load
     pressed = contact.lengths_by_zone @ (solution.pressure > 0)
@@ -264,22 +297,14 @@ def centroid(mesh: Mesh) -> Array:
     return mesh.centroid + 2 / 3 * (flux @ x.reshape(-1, 2)) / flux.sum()
 
 
-def _load_of_turns(
-    gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution, moved: Displaced
-) -> Array:
-    """Work (j,) in free motions of what the pressure gains along the normals of the displaced places."""
-    forces, motions = (contact.weights * solution.pressure)[:, None] * moved.turn, body.free
-    if not forces.any():
-        return np.zeros(len(motions))
-    at, other = motions.displacement(body.mesh), body.points.opposite.node
-    work = np.tensordot(forces, at[body.points.node], axes=2)
-    work -= np.tensordot(forces[other >= 0], at[other[other >= 0]], axes=2)
+def ways_of_contact(problem: Problem, body: Body, contact: CondensedContact) -> Array:
+    """Motion (n, 2, j) of the contact points against their surfaces in each of all free motions, seen and unseen."""
+    motions, other = body.free, body.points.opposite.node
+    at = motions.displacement(body.mesh)
+    ways = at[body.points.node] - np.where((other >= 0)[:, None, None], at[other], 0.0)
     for number, name in enumerate(contact.tools.names):
-        zones = [contact.zone_names.index(zone) for zone in gaps.problem.tools[name].zones]
-        own = np.isin(contact.zone, zones)
-        steps = steps_of_surfaces(gaps.problem)[contact.zone[own]]
-        x, y = (contact.points[own] - steps - contact.tools.point[number]).T
-        fx, fy = forces[own].T
-        load = np.array([fx.sum(), fy.sum(), (x * fy - y * fx).sum()])
-        work = work - load @ motions.tools[3 * number : 3 * number + 3]
-    return work
+        own = np.isin(contact.zone, [contact.zone_names.index(zone) for zone in problem.tools[name].zones])
+        about = steps_of_surfaces(problem)[contact.zone[own]] + contact.tools.point[number]
+        (x, y), (along_x, along_y, turn) = (contact.points[own] - about).T, motions.tools[3 * number : 3 * number + 3]
+        ways[own] -= np.stack([along_x - np.outer(y, turn), along_y + np.outer(x, turn)], axis=1)
+    return ways

@@ -14,14 +14,15 @@ from dataclasses import replace
 import numpy as np
 
 from bemcontact.adaptivity.resting_contacts import motion_as_a_whole, motions_of_pairs
-from bemcontact.analysis.displaced_contact import load_after
+from bemcontact.analysis.displaced_contact import load_after, ways_of_contact
 from bemcontact.analysis.moved_contact import (
     WITHHELD,
     Judgement,
     MovedContact,
     judged_to,
 )
-from bemcontact.analysis.second_solution import NO_CHANGE, SecondSolution
+from bemcontact.analysis.second_motions import NO_CHANGE, SecondMotions
+from bemcontact.analysis.second_solution import SecondSolution
 from bemcontact.arrays import Array, IntArray, indices, norm
 from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
@@ -54,10 +55,11 @@ def placement(
         return _off_the_surface(first, int(off[np.argmax(first.moved.distance[off])])), ()
     notes, moved = tuple(_overhangs(first, beside)) if len(beside) else (), first.moved
     moved.change[beside] = 0.0
-    load = load_after(gaps, body, contact, solution, moved, first.noted)
+    ways = ways_of_contact(gaps.problem, body, contact)
+    load = load_after(gaps, body, contact, solution, moved, ways, first.noted)
     if load.any():
-        push, ways = load.copy(), first.unheld()  # nothing holds the unseen motions
-        push[: len(ways)] = ways @ (ways.T @ load[: len(ways)])
+        push, unheld = load.copy(), first.unheld()  # nothing holds the unseen motions
+        push[: len(unheld)] = unheld @ (unheld.T @ load[: len(unheld)])
         misfit, said = _slides(first, body, push)
         if misfit is not None:
             return misfit, notes
@@ -69,8 +71,10 @@ def placement(
         return None, notes
     there = replace(contact, initial_gap=contact.initial_gap + moved.change, motion_load=contact.motion_load + load)
     again = complementarity.solve(there, near=first.pressed)
-    second = SecondSolution(first=first, contact=there, solution=again)
-    misfit, said = second.moves_on()
+    ways = ways[..., : contact.free_motions]
+    motions = SecondMotions(first=first, contact=there, solution=again, free=body.seen, ways=ways)
+    second = SecondSolution(first=first, contact=there, solution=motions.without_unknown())
+    misfit, said = motions.moves_on()
     if misfit is None and nearby is None:
         misfit, changed = second.forces_changed()
         said = (*said, *changed)
@@ -79,7 +83,7 @@ def placement(
         return misfit, notes
     misfit, said = second.peaks_changed([name for name in contact.zone_names if name not in infinite], nearby)
     if misfit is None and nearby is None:
-        misfit, others = _pairs_changed(first, body)
+        misfit, others = _pairs_changed(first, body, motions.unknown_amplitudes)
         said = (*said, *others, *second.places_changed())
     return misfit, (*notes, *said)
 
@@ -99,13 +103,15 @@ def _slides(first: MovedContact, body: Body, push: Array) -> Judgement:
     return first.judged(words, withheld=size >= least * total, i=i, depth=size / total, allowed=least)
 
 
-def _pairs_changed(first: MovedContact, body: Body) -> Judgement:
+def _pairs_changed(first: MovedContact, body: Body, unknown: Array) -> Judgement:
     """Judge how far two elastic bodies move beside the way after which their pairs are formed.
 
-    Load cases share pairs, and a body that moves on and on never is where they are.
+    Load cases share pairs, and a body that moves on and on never is where they are. Free motions whose amplitudes (k,)
+    are `unknown` are left out.
     """
     gaps, contact, pressure, said = first.gaps, first.contact, first.solution.pressure, list[str]()
-    for zone, found in motions_of_pairs(body, contact, pressure, gaps.state.displacement).items():
+    displacement = gaps.state.displacement - (body.seen.displacement(body.mesh) @ unknown)[body.mesh.elements]
+    for zone, found in motions_of_pairs(body, contact, pressure, displacement).items():
         surface = gaps.surfaces[zone]
         if not isinstance(surface, BodySurface):
             continue

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bemcontact.analysis.displaced_contact import turn_of_body
 from bemcontact.analysis.moved_contact import (
     WITHHELD,
     Judgement,
@@ -18,7 +17,6 @@ from bemcontact.analysis.moved_contact import (
 )
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.footprint import footprint
-from bemcontact.assessment.penetration import Misfit
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.problems.problem import Problem
@@ -29,17 +27,10 @@ SMALL_COMPONENT = 0.15
 What is prescribed does not change; the other component may, by far more than the force as a whole."""
 SMALL_CONTACT = 0.08
 """Force of a contact over that of its zone from which it is judged by itself, and not by this part."""
-MOVES_ON = 0.8
-"""Part of a motion by which a body moves on in the second solution, from which it is not held: the steps do not end.
-
-They are a geometric series. A body that moves back in the second solution is held."""
-NO_SQUARE = 2.0
-"""A motion that is so many times the change of the gaps, or the turn of normals and body times the motion of places,
-does not come from these, which are of second order."""
-NO_CHANGE = 1e-7
-"""Difference of the gaps, over the displacement scale of contact, that changes nothing."""
 SAME = 1e-9
 """Relative difference of the changes of two forces that is round-off, as of a body and its mirror image."""
+ALIKE = 0.1
+"""Relative difference of what changes at two contacts up to which the mesh decides it: the first one is named."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,62 +51,6 @@ class SecondSolution:
     def solved(self) -> bool:
         """Whether there is one."""
         return self.solution.status is Status.SOLVED
-
-    def moves_on(self) -> Judgement:
-        """Find a free motion that goes on by as much again where the body has moved to: nothing holds it.
-
-        A flat block slides on a round support, whose normals are tilted beside the place where it touches. It would
-        move until the tilt balances the load, but takes the place of contact with it. So does a disc that a couple
-        rolls along a plane: it would turn until the lever of the pressure balances the couple. A motion that no load
-        drives, and that is small beside every contact, may be noise of the mesh, and places nothing elsewhere. Nor does
-        a motion that slopes drive by a small part of the forces, as that of a roller between bodies that bend: it is
-        noted.
-        """
-        first, contact = self.first, self.first.contact
-        if not self.solved or not contact.free_motions:
-            return None, ()
-        reach, moved = abs(contact.rigid_motions).max(axis=0), first.moved
-        before = first.solution.rigid_amplitudes * reach
-        unseen = first.unheld()  # their amplitudes are a rule's
-        change = self.solution.rigid_amplitudes - first.solution.rigid_amplitudes
-        further = (change - unseen @ (unseen.T @ change)) * reach * np.where(before < 0, -1.0, 1.0)
-        before = abs(before)
-        pressed = np.maximum(first.solution.pressure, self.solution.pressure) > 0
-        turned = abs(moved.turn[pressed]).max() + abs(turn_of_body(first.gaps))
-        square = max(abs(moved.change[pressed]).max(), turned * abs(moved.motion[pressed]).max())
-        least = max(NO_SQUARE * square, NO_CHANGE * contact.scales.displacement)
-        lengths = contact.lengths_by_zone @ (first.solution.pressure > 0)
-        slight = first.noted * lengths[lengths > 0].min(initial=np.inf)
-        noise = (before + further < slight * reach) & (contact.motion_load == 0)
-        held = (further < np.maximum(MOVES_ON * before, least)) | noise
-        if held.all():
-            return None, ()
-        j, part = int(np.argmax(np.where(held, 0.0, further))), self._push_of_slopes()
-        slight_push = part < first.noted
-        if (held | slight_push).all():
-            words = (
-                f"no contact holds the {contact.motion_names[j]}, and no load drives it: slopes push along it by "
-                f"{100 * part[j]:.2g} % of the force of contact; its amount is not known, and a little friction holds "
-                "it"
-            )
-            return None, (words,)
-        j = int(np.argmax(np.where(held | slight_push, 0.0, further)))
-        i = int(np.argmax(contact.weights * first.solution.pressure * abs(contact.rigid_motions[:, j])))
-        words = (
-            f"No contact holds the {contact.motion_names[j]} against the load. Only slopes and levers as drawn seem to "
-            f"hold it, and they move with the body. Along this motion contact moves by {first.length(before[j])}, and "
-            f"from there on by {first.length(further[j])}. Prescribe a displacement that holds the body in this "
-            "direction."
-        )
-        return first.misfit(Misfit.MOVED, words, i, float(further[j]), float(least)), ()
-
-    def _push_of_slopes(self) -> Array:
-        """Largest part (k,) of the force of a zone that acts along each free motion; infinite for those with a load."""
-        contact, pressure = self.first.contact, self.first.solution.pressure
-        work = abs((contact.weights_by_zone * pressure) @ contact.rigid_motions)
-        force = (contact.lengths_by_zone @ pressure)[:, None] * abs(contact.rigid_motions).max(axis=0)
-        part = np.divide(work, force, out=np.zeros_like(work), where=force > 0).max(axis=0)
-        return np.where(contact.motion_load == 0, part, np.inf)
 
     def forces_changed(self) -> Judgement:
         """Judge how the force of each contact changes with the gaps and normals of the displaced places.
@@ -202,13 +137,13 @@ class SecondSolution:
             middles, spreads = self._within(was[i].run, both[:, 0].min(), both[:, 1].max())
             if spreads.all():
                 shifts[i], grown[i] = abs(middles[1] - middles[0]) / longer[i], spreads[1] / spreads[0] - 1
-        if shifts[number := int(np.argmax(shifts))] >= self.first.noted:
+        if shifts[number := int(np.argmax(shifts >= (1 - ALIKE) * shifts.max()))] >= self.first.noted:
             yield (
                 f"with the gaps after the motion of the body, contact of '{was[number].zone}' is elsewhere by "
-                f"{100 * shifts[number]:.2g} % of its length, or more; error bars of its ends and of rotations do not "
-                "include this"
+                f"{100 * shifts[number]:.2g} % of its length, or more; error bars of its ends, "
+                "and of translations and rotations, do not include this"
             )
-        if abs(grown[number := int(np.argmax(abs(grown)))]) >= self.first.noted:
+        if abs(grown[number := int(np.argmax(abs(grown) >= (1 - ALIKE) * abs(grown).max()))]) >= self.first.noted:
             yield (
                 f"with the gaps after the motion of the body, contact of '{was[number].zone}' is "
                 f"{'longer' if grown[number] > 0 else 'shorter'} by {100 * abs(grown[number]):.2g} %; error bars of "
