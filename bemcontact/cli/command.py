@@ -136,12 +136,15 @@ def _parameters_of(group: Any) -> Iterator[inspect.Parameter]:
 
 
 @contextmanager
-def modules() -> Iterator[None]:
-    """Read the modules of a command; in the program, garbage is searched for from then on, but not among them."""
+def modules() -> Iterator[bool]:
+    """Read the modules of a command; in the program, garbage is searched for from then on, but not among them.
+
+    Yields whether this process is the program, and not one that calls the command, such as that of a test.
+    """
     in_program = not gc.isenabled()
     gc.disable()
     try:
-        yield
+        yield in_program
     finally:
         if in_program:
             gc.freeze()

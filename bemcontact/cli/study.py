@@ -86,7 +86,7 @@ def study(
     """
 
     def work(report: Report) -> CommandOutput:
-        with modules():
+        with modules() as in_program:
             from bemcontact.report.study_page import study_shortfall, study_summary
             from bemcontact.runs.study import study_of_plan
             from bemcontact.studies.axes import written_axes
@@ -113,7 +113,9 @@ def study(
             raise OptionError("--scheduler and --workers exclude each other: a cluster has its own workers")
         try:
             count = workers or processors()
-            done = study_of_plan(plan, shown, out, count, scheduler, report, source.as_run(), ensure_possible)
+            done = study_of_plan(
+                plan, shown, out, count, scheduler, report, source.as_run(), ensure_possible, in_program=in_program
+            )
         except KeyboardInterrupt:
             raise KeyboardInterrupt("" if out is None else GO_ON.format(folder=out)) from None
         seconds = time.perf_counter() - begin

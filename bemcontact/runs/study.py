@@ -131,11 +131,13 @@ def study_of_plan(
     progress: Progress | None,
     spec: str | None = None,
     ensure_possible: Callable[[], None] | None = None,
+    *,
+    in_program: bool = False,
 ) -> Study:
     """Solve the members of a plan that the journal of the folder does not have, and write the folder.
 
     Errors as of `study`; `spec` is the text of the problem as run. `ensure_possible` checks the values, as the method
-    of the plan does, while processes get ready.
+    of the plan does, while processes get ready. `in_program` is that of `started`.
     """
     workers = whole_number(workers, "number of workers", 1, MOST_WORKERS)
     if scheduler is not None:
@@ -146,8 +148,9 @@ def study_of_plan(
     seen = None if folder is None else state_of(folder / JOURNAL)
     rows = _recorded(plan, folder)
     tasks = [*tasks_of(plan, [number in rows for number in range(len(plan))])]
-    with started(1 if scheduler else workers, len(tasks)) as processes:
-        (ensure_possible or plan.ensure_possible)()
+    with started(plan, 1 if scheduler else workers, len(tasks), in_program=in_program) as processes:
+        if processes is None or not processes.find_possible():
+            (ensure_possible or plan.ensure_possible)()
         if folder is not None and (processes or scheduler):  # what writes the folder is read while others solve
             threading.Thread(target=import_module, args=["bemcontact.report.folder"]).start()
         with connected(scheduler) as client, nullcontext() if folder is None else alone(folder, seen):
@@ -166,7 +169,7 @@ def _solved(
     """Rows of tasks as they are solved: on the cluster of a client, by processes, or here."""
     if client is not None:
         return rows_by_dask(plan, tasks, client, partial(_report, progress, STAGE))
-    return rows_here(plan, tasks) if processes is None else rows_by_processes(plan, tasks, processes)
+    return rows_here(plan, tasks) if processes is None else rows_by_processes(tasks, processes)
 
 
 def _recorded(plan: StudyPlan, folder: Path | None) -> dict[int, MemberRow]:

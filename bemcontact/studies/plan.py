@@ -120,15 +120,18 @@ class StudyPlan:
         except ProblemError:
             return False
 
-    def ensure_possible(self) -> None:
-        """Refuse values that are wrong by themselves: each value of each axis, with the first value of the variants."""
+    def ensure_possible(self, first: int = 0, last: int | None = None) -> None:
+        """Refuse values that are wrong by themselves: each value of each axis, with the first value of the variants.
+
+        `first` and `last` choose some of them, by number in the order of the axes.
+        """
         fixed = {axis.name: axis.values[0] for axis in self.axes if axis.of_variants}
-        for axis in self.axes:
-            for value in axis.values:
-                try:
-                    self.problem_with({**fixed, axis.name: value})
-                except ProblemError as error:
-                    raise located_in(axis, value, error) from None
+        pairs = ((axis, value) for axis in self.axes for value in axis.values)
+        for axis, value in islice(pairs, first, last):
+            try:
+                self.problem_with({**fixed, axis.name: value})
+            except ProblemError as error:
+                raise located_in(axis, value, error) from None
 
 
 def _acts(path: tuple[str | int, ...]) -> bool:

@@ -22,6 +22,9 @@ from bemcontact.studies.rows import MemberRow, MemberStatus, in_one_message
 from bemcontact.version import __version__
 from bemcontact.views import Tabular
 
+LEAST_BLOCK = 1 << 20
+"""Bytes of JSON that are read at once, beside those of two lines."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class AxisRecord(Leaf):
@@ -150,15 +153,20 @@ class StudyTable(Recorded, Tabular):
         if find_spec("pyarrow") is None:
             return False
         import pyarrow
+        import pyarrow.json
         import pyarrow.parquet
 
         columns = {name: _of_one_kind(values) for name, values in self.table().items()}
         numbers = {"mesh_error", *self.columns, *(f"{name}_error" for name in self.columns)}
-        arrays = {
-            name: pyarrow.array(values, type=pyarrow.float64() if name in numbers else None)
-            for name, values in columns.items()
-        }
-        pyarrow.parquet.write_table(pyarrow.table(arrays), path)
+        kinds = {name: "float64" if name in numbers else _kind(values) for name, values in columns.items()}
+        schema = pyarrow.schema([(name, pyarrow.type_for_alias(kind)) for name, kind in kinds.items()])
+        # through JSON: pyarrow.array would import pandas, which takes as long as all the rest of the folder
+        rows = zip(*columns.values(), strict=True)
+        lines = [json.dumps(dict(zip(columns, row, strict=True))).encode() + b"\n" for row in rows]
+        blocks = pyarrow.json.ReadOptions(block_size=2 * max(map(len, lines)) + LEAST_BLOCK)
+        form = pyarrow.json.ParseOptions(explicit_schema=schema)
+        table = pyarrow.json.read_json(io.BytesIO(b"".join(lines)), blocks, form)
+        pyarrow.parquet.write_table(table, path)
         return True
 
     def record(self) -> StudyRecord:
@@ -194,6 +202,12 @@ def _of_one_kind(values: Sequence[Any]) -> Sequence[Any]:
     if all(value is None or is_real(value) for value in values):
         return values if all(isinstance(value, int) for value in values) else [_float(value) for value in values]
     return [None if value is None else _cell(value) for value in values]
+
+
+def _kind(values: Sequence[Any]) -> str:
+    """Name that pyarrow has for the kind of values, which are of one kind or None."""
+    first = next((value for value in values if value is not None), None)
+    return "null" if first is None else {int: "int64", float: "float64", str: "string"}[type(first)]
 
 
 def _float(value: Any) -> float | None:

@@ -1,5 +1,7 @@
 """The comparison at an equal error: both bodies by both programs, and what has reached an error."""
 
+import itertools
+import time
 from pathlib import Path
 
 import boundary_elements_pressed
@@ -7,8 +9,9 @@ import finite_elements_pressed
 import numpy as np
 import pressure_error
 import pytest
+import timing
 from finite_elements_pressed import BLOCK, CYLINDER, FILLET, FLAT, HEIGHT, WIDTH
-from speed_of_finite_elements import LEVELS, Comparison, Point, ratio, reached, targets
+from speed_of_finite_elements import LEAST_TURNS, LEVELS, Comparison, Point, both, neighboring, reached, targets
 
 import bemcontact
 from bemcontact.bem import condense as condensing
@@ -70,7 +73,7 @@ def test_triangles_are_as_small_as_wanted(size):
 
 def points(family, *errors):
     return [
-        Point(family=family, setting=i, unknowns=10 * (i + 1), turns=[2.0**i], error=error, plain=2 * error)
+        Point(family=family, setting=i, unknowns=10 * (i + 1), seconds=2.0**i, error=error, plain=2 * error)
         for i, error in enumerate(errors)
     ]
 
@@ -96,15 +99,41 @@ def test_an_error_is_reached_where_all_finer_meshes_have_it():
     assert reached(some, "b", 0.01) is None
 
 
-def test_times_are_compared_at_an_equal_error():
-    """The first family gets to 1 % in 4 s, the second in 1 s; only the first gets to 0.1 %."""
-    both = points("theirs", 0.1, 0.05, 0.01, 0.0005) + points("ours", 0.01, 0.009)
-    assert ratio(both, ("theirs", "ours"), 0.01).median == 4.0
-    assert ratio(both, ("theirs", "ours"), 0.001) is None
-    assert ratio(both, ("theirs", "ours"), 0.02, plain=True).median == 4.0
+def test_meshes_are_compared_at_an_equal_error():
+    """The first family gets to 1 % with its third mesh, the second with its first; only the first gets to 0.1 %."""
+    every = points("theirs", 0.1, 0.05, 0.01, 0.0005) + points("ours", 0.01, 0.009)
+    assert both(every, ("theirs", "ours"), 0.01) == (every[2], every[4])
+    assert both(every, ("theirs", "ours"), 0.001) is None
+    assert both(every, ("theirs", "ours"), 0.02, plain=True) == (every[2], every[4])
+
+
+def test_a_machine_that_becomes_slower_changes_no_ratio_of_neighboring_turns(monkeypatch: pytest.MonkeyPatch):
+    """Both take 10 % longer from turn to turn."""
+    clock, cost = [0.0], [1.0]
+
+    def works(seconds: float) -> None:
+        clock[0] += seconds * cost[0]
+
+    def theirs() -> None:
+        cost[0] *= 1.1
+        works(6.0)
+
+    monkeypatch.setattr(timing.time, "process_time", lambda: clock[0])
+    monkeypatch.setattr(timing, "AT_ONCE", 0.0)
+    ratios = timing.ratio(*neighboring(theirs, lambda: works(2.0), 25))
+    assert (ratios.lower, ratios.median, ratios.upper) == pytest.approx((3.0, 3.0, 3.0))
+
+
+def test_few_turns_are_enough_where_they_take_long(monkeypatch: pytest.MonkeyPatch):
+    ticks = itertools.count()
+    monkeypatch.setattr(time, "perf_counter", lambda: 100.0 * next(ticks))
+    both_times = neighboring(lambda: np.ones(10**5).sum(), lambda: np.ones(10**5).sum(), 25)
+    assert [len(times) for times in both_times] == [LEAST_TURNS, LEAST_TURNS]
 
 
 def test_each_target_is_at_a_level_of_the_table():
-    names = [target.name for target in targets(points("elements, graded", 0.009))]
+    compared = Comparison(body=CYLINDER, state=boundary_elements_pressed.cylinder, reference=None, end=2.8, unknowns=0,
+                          checked=0.0, points=points("elements, graded", 0.009))  # fmt: skip
+    names = [target.name for target in targets(compared)]
     assert names[0] == "cylinder to 1 %: unknowns (graded)"
     assert {name.split(" %")[0].split()[-1] for name in names} <= {f"{100 * level:g}" for level in LEVELS}

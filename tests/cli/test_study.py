@@ -111,10 +111,20 @@ def test_a_folder_is_checked_without_what_draws(tmp_path: Path):
     assert answer.stderr.splitlines()[-1] == "False"
 
 
+@pytest.mark.slow
+def test_a_folder_is_written_without_pandas(tmp_path: Path):
+    """To import it takes as long as to write the folder."""
+    answer = in_one_process(
+        f"study {CYLINDER} --vary conditions.top.pressure=20,30 --workers 1 --out {tmp_path / 'study'}",
+        code="print('pandas' in sys.modules, file=sys.stderr)",
+    )
+    assert (answer.stderr, (tmp_path / "study" / "study.parquet").is_file()) == ("False\n", True)
+
+
 def started(*arguments: object) -> subprocess.Popen[str]:
     root = str(Path(bemcontact.__file__).parents[1])
     handled = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
-    program = f"{handled}\nfrom bemcontact.cli import main; main()"
+    program = f"{handled}\nfrom bemcontact.__main__ import run_program; run_program()"
     return subprocess.Popen(
         [sys.executable, "-c", program, *map(str, arguments)],
         stdout=subprocess.DEVNULL,
@@ -125,7 +135,9 @@ def started(*arguments: object) -> subprocess.Popen[str]:
 
 
 @pytest.mark.slow
-def test_an_interrupt_says_how_to_go_on_and_nothing_is_lost(tmp_path: Path):
+@pytest.mark.parametrize("how", ["SIGINT", "SIGKILL"])
+def test_a_run_that_is_ended_says_how_to_go_on_if_it_can_and_nothing_is_lost(tmp_path: Path, how: str):
+    """Its workers end with it: what it wrote to is read to its end. Those that are forked might keep its pipes open."""
     many = ("study", CYLINDER, "--vary", "material.young_modulus=900:1100:20", "--workers", 2, "--out")
     place = tmp_path / "study"
     process = started(*many, place)
@@ -134,10 +146,11 @@ def test_an_interrupt_says_how_to_go_on_and_nothing_is_lost(tmp_path: Path):
         time.sleep(0.05)
     while time.monotonic() < deadline and (place / JOURNAL).read_bytes().count(b"\n") < 4:
         time.sleep(0.05)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(signal.Signals[how])
     _, said = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert said == f"interrupted; what is done is kept in {place}, and the same command goes on from there\n"
+    if how == "SIGINT":
+        assert process.returncode == 130
+        assert said == f"interrupted; what is done is kept in {place}, and the same command goes on from there\n"
     kept = (place / JOURNAL).read_bytes()
     process = started(*many, place)
     _, said = process.communicate(timeout=120)

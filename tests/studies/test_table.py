@@ -48,8 +48,10 @@ def test_csv_is_the_table():
 
 def test_parquet_is_the_table(tmp_path: Path):
     assert MIXED.save_parquet(tmp_path / "a.parquet")
-    read = pyarrow.parquet.read_table(tmp_path / "a.parquet").to_pydict()
-    columns = MIXED.table()
+    written = pyarrow.parquet.read_table(tmp_path / "a.parquet")
+    kinds = [str(written.schema.field(name).type) for name in ("member", "a", "mesh_error", "peak")]
+    assert kinds == ["int64", "string", "double", "double"]
+    read, columns = written.to_pydict(), MIXED.table()
     assert read.pop("a") == ["1.5", "x, y", "[1, 2]"]
     columns.pop("a")
     assert read == columns

@@ -18,9 +18,8 @@ from bemcontact.studies.rows import MemberRow
 from bemcontact.studies.work import tasks_of
 from bemcontact.studies.workers import Processes, rows_by_processes, rows_here
 
-CYLINDER = bemcontact.load(Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml", variant="paper").with_value(
-    "accuracy", 0.01
-)
+MODEL = Path(__file__).parents[2] / "models" / "cylinder_on_plane.yaml"
+CYLINDER = bemcontact.load(MODEL, variant="paper").with_value("accuracy", 0.01)
 PLAN = study_plan(CYLINDER, {"conditions.top.pressure": [10, 20, 30], "material.young_modulus": [900, 1000, 1100]})
 
 
@@ -44,7 +43,7 @@ def test_two_processes_find_the_same_rows_though_one_is_killed(monkeypatch: pyte
 
     monkeypatch.setattr(workers, "ProcessPoolExecutor", watched)
     rows = list[MemberRow]()
-    for row in rows_by_processes(PLAN, tasks_of(PLAN, [False] * len(PLAN)), Processes(2)):
+    for row in rows_by_processes(tasks_of(PLAN, [False] * len(PLAN)), Processes(2, PLAN)):
         rows.append(row)
         if len(rows) == 3:
             os.kill(next(iter(pools[0]._processes)), signal.SIGKILL)
@@ -53,9 +52,35 @@ def test_two_processes_find_the_same_rows_though_one_is_killed(monkeypatch: pyte
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are forked on Linux")
+def test_forked_processes_find_the_same_rows_and_which_values_are_possible():
+    """In a program of its own, as the command line is: what else this process has started, nobody knows."""
+    answer = subprocess.run([sys.executable, "-c", FORKED], capture_output=True, text=True, check=True)
+    assert answer.stdout.split() == ["True", "True", "False", "True"]
+    assert answer.stderr == ""
+
+
+FORKED = f"""
+import bemcontact
+from bemcontact.studies.plan import study_plan
+from bemcontact.studies.work import tasks_of
+from bemcontact.studies.workers import Processes, rows_by_processes, rows_here, started
+cylinder = bemcontact.load({str(MODEL)!r}, variant="paper")
+values = [900.0, 1000.0, 1100.0, 1200.0, -1.0]
+for last in (4, 5):
+    plan = study_plan(cylinder, {{"material.young_modulus": values[:last]}})
+    tasks = [*tasks_of(plan, [False] * last)]
+    with started(plan, 2, last, in_program=True) as processes:
+        print(processes.find_possible())
+        rows = rows_by_processes(tasks, processes)
+        print(sorted(rows, key=lambda row: row.number) == [*rows_here(plan, tasks)])
+"""
+
+
+@pytest.mark.slow
 def test_processes_end_when_nobody_wants_more_rows():
     before = set(threading.enumerate())
-    found = rows_by_processes(PLAN, tasks_of(PLAN, [False] * len(PLAN)), Processes(2))
+    found = rows_by_processes(tasks_of(PLAN, [False] * len(PLAN)), Processes(2, PLAN))
     next(found)
     began = time.perf_counter()
     found.close()
@@ -77,7 +102,7 @@ from threadpoolctl import threadpool_info
 from bemcontact.studies.workers import _begin
 from bemcontact.threads import WORTH_THREADS, one_thread, workers
 ends_with, alive = Pipe(duplex=False)
-_begin(ends_with)
+_begin(None, ends_with, None)
 with one_thread, one_thread.lifted(WORTH_THREADS):
     print(workers(), {item["num_threads"] for item in threadpool_info()})
 """
