@@ -124,11 +124,15 @@ def _carried_along(
 def _flat_side(surface: BodySurface, at: Array, pairs: Array, force: Array) -> int | None:
     """Side, 0 or 1, that is flat beside the other one where points (k, 2) press on their pairs; None if neither is.
 
-    Where both are, it is the side on which the other one may slide past its round edges, as of `share`.
+    Where both are, it is the side on which the other one may slide past its round edges, as of `share`. Contact up to
+    an end of a side, as at a corner or a bond, does not have the slope of the whole.
     """
     if surface.share in FLAT:
         return int(surface.share == 0)
     pressed = force > 0
+    around = pressed | np.roll(pressed, 1) | np.roll(pressed, -1)
+    if surface.other_side.feet(at[around]).at_corner.any() or surface.feet(pairs[around]).at_corner.any():
+        return None
     first, second = (
         float(force[pressed] @ abs(curvatures(edges, nearest_on(edges, places[pressed]))))
         for edges, places in ((surface.first, at), (surface.edges, pairs))
