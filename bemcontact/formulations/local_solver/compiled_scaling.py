@@ -93,7 +93,7 @@ def _solve(matrix: Array, right: Array) -> None:
 
 
 @compiled()
-def natural_factors(H: Array, c: Array, A: Array, bounds: Array) -> Array:
+def natural_factors_by_loops(H: Array, c: Array, A: Array, bounds: Array) -> Array:
     """As `equilibration.natural_factors`."""
     m, n = A.shape
     of_hessian, least, largest = _logarithms(H, math.inf, -math.inf)
@@ -208,10 +208,10 @@ def _scaled(matrix: Array, rows: Array, columns: Array) -> tuple[Array, float]:
 
 
 @compiled()
-def scaled_data(H: Array, c: Array, A: Array, bounds: Array) -> ScaledData:
+def scaled_data_by_loops(H: Array, c: Array, A: Array, bounds: Array) -> ScaledData:
     """As `equilibration.scaled_data`."""
     m, n = A.shape
-    factors = natural_factors(H, c, A, bounds)
+    factors = natural_factors_by_loops(H, c, A, bounds)
     D, E, of_bounds = factors[:n], factors[n:], np.empty(n + m)
     _balance(A, D, E)
     for j in range(n):

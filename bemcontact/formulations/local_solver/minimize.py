@@ -331,7 +331,7 @@ def _by_numba() -> MachineCode:
         scaling, tableau = (import_module(f"{package}.{module}") for module in ("compiled_scaling", "tableau"))
     except ImportError:
         return IN_NUMPY
-    return scaling.scaled_data, tableau.regular_iterations
+    return scaling.scaled_data_by_loops, tableau.regular_iterations
 
 
 def _wanted(working_set: ArrayLike, size: int) -> BoolArray:

@@ -6,11 +6,13 @@ In a fresh tree numba compiles for about 20 s, so that tests of compiled code ar
 import importlib.util
 import sys
 from contextlib import contextmanager
+from types import SimpleNamespace
 
 import pytest
 
 from bemcontact import compilation
-from bemcontact.formulations.local_solver import equilibration, minimize
+from bemcontact.formulations.local_solver import minimize
+from bemcontact.formulations.local_solver.equilibration import natural_factors, scaled_data
 
 PACKAGE = "bemcontact.formulations.local_solver"
 MODULES = "compiled_scaling", "tableau"
@@ -45,10 +47,11 @@ def machine_code(request, monkeypatch):
 
 
 @pytest.fixture(params=["NumPy", AS_PYTHON, COMPILED])
-def room(request, monkeypatch):
-    """The module that scales."""
+def scaling(request, monkeypatch):
+    """The functions that scale: `natural_factors` and `scaled_data`."""
     if request.param == "NumPy":
-        yield equilibration
+        yield SimpleNamespace(natural_factors=natural_factors, scaled_data=scaled_data)
         return
     with _modules(request.param, monkeypatch) as modules:
-        yield modules["compiled_scaling"]
+        loops = modules["compiled_scaling"]
+        yield SimpleNamespace(natural_factors=loops.natural_factors_by_loops, scaled_data=loops.scaled_data_by_loops)

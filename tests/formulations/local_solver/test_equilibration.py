@@ -49,24 +49,24 @@ def least_squares(stated):
     return np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0][:-1]
 
 
-SAME_ROOM = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+SAME_FUNCTIONS = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
-def natural_factors(room, stated):
-    return room.natural_factors(stated.H, stated.c, stated.A, np.array([stated.lower, stated.upper]))
+def natural_factors(scaling, stated):
+    return scaling.natural_factors(stated.H, stated.c, stated.A, np.array([stated.lower, stated.upper]))
 
 
-@settings(SAME_ROOM, max_examples=60)
+@settings(SAME_FUNCTIONS, max_examples=60)
 @given(st.integers(0, 10**9))
-def test_natural_factors_are_the_least_squares_solution(room, seed):
+def test_natural_factors_are_the_least_squares_solution(scaling, seed):
     stated = statement(seed)
-    factors = natural_factors(room, stated)
+    factors = natural_factors(scaling, stated)
     assert np.abs(np.log2(factors) - least_squares(stated)).max() <= 0.01  # the factors have a small weight
 
 
-@settings(SAME_ROOM, max_examples=100)
+@settings(SAME_FUNCTIONS, max_examples=100)
 @given(st.integers(0, 10**9))
-def test_natural_factors_change_with_the_units(room, seed):
+def test_natural_factors_change_with_the_units(scaling, seed):
     """So scaled data do not depend on units. No entry is as small as noise.
 
     Both are within 0.01 of least squares, which change so exactly; see the test above.
@@ -81,15 +81,15 @@ def test_natural_factors_change_with_the_units(room, seed):
         lower=np.zeros(n + m),
         upper=np.concatenate([1.0 / columns, rows]) * stated.upper,
     )
-    plain = natural_factors(room, stated)
-    other = natural_factors(room, changed)
+    plain = natural_factors(scaling, stated)
+    other = natural_factors(scaling, changed)
     expected = plain / np.concatenate([columns, rows])
     assert np.abs(np.log2(other / expected)).max() <= 2 * 0.01
 
 
-@settings(SAME_ROOM, max_examples=100)
+@settings(SAME_FUNCTIONS, max_examples=100)
 @given(st.integers(0, 10**9))
-def test_entries_that_are_rounding_do_not_count(room, seed):
+def test_entries_that_are_rounding_do_not_count(scaling, seed):
     """Those of H in pairs, and whatever the unit of the objective; the factors are those without these entries."""
     stated, rng = statement(seed), np.random.default_rng(seed)
     m, n = stated.A.shape
@@ -100,17 +100,17 @@ def test_entries_that_are_rounding_do_not_count(room, seed):
     np.testing.assert_array_equal(counted, _entries(unit * wide.H, unit * wide.c, wide.A)[0])
     np.testing.assert_array_equal(counted[:n], counted[:n].T)
     without = replace(wide, H=counted[:n] * wide.H, A=counted[n + 1 :] * wide.A)
-    factors = natural_factors(room, wide)
+    factors = natural_factors(scaling, wide)
     far = np.abs(np.log2(factors) - least_squares(without)).max()
     assert far <= 0.01 * np.abs(np.log2([*columns, *rows, 2.0])).max()  # the factors have a small weight
 
 
-@settings(SAME_ROOM, max_examples=100)
+@settings(SAME_FUNCTIONS, max_examples=100)
 @given(st.integers(0, 10**9), st.sampled_from([0.3, 0.7]))
-def test_columns_and_rows_of_the_scaled_matrix_have_size_one(room, seed, density):
+def test_columns_and_rows_of_the_scaled_matrix_have_size_one(scaling, seed, density):
     """Rows to the nearest power of two; no entry is larger than its row; zeros stay zeros."""
     stated = statement(seed, density=density)
-    A = equilibrate(stated, room.scaled_data)[0].A
+    A = equilibrate(stated, scaling.scaled_data)[0].A
     lengths = np.linalg.norm(A, axis=1)
     assert ((A != 0.0) == (stated.A != 0.0)).all()
     filled = lengths > 0.0
@@ -127,19 +127,19 @@ def test_machine_code_scales_as_numpy_does(machine_code, seed, density):
     wide = replace(
         stated, H=columns[:, None] * stated.H * columns, A=rows[:, None] * stated.A * columns, upper=1e-3 * stated.upper
     )
-    ours, theirs = equilibrate(wide), equilibrate(wide, machine_code["compiled_scaling"].scaled_data)
+    ours, theirs = equilibrate(wide), equilibrate(wide, machine_code["compiled_scaling"].scaled_data_by_loops)
     for one, other in zip(ours, theirs, strict=True):
         for name in vars(one).keys() & one.__dataclass_fields__.keys():
             np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
 
 
 @pytest.mark.parametrize("entry", [1e308, 1e-308])
-def test_what_no_number_represents_is_refused(room, entry):
+def test_what_no_number_represents_is_refused(scaling, entry):
     """A product of two units of variables is beyond double precision, however these are chosen."""
     H, A = np.diag([entry, 1 / entry, 1.0]), np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1e300, 1.0, 1e-300]])
     wide = Statement(H=H, c=np.array([1e300, 1e-300, 1e300]), A=A, lower=np.full(6, -1e19), upper=np.full(6, 5e-324))
     with pytest.raises(ProblemError, match="too far apart"):
-        equilibrate(wide, room.scaled_data)
+        equilibrate(wide, scaling.scaled_data)
 
 
 @pytest.mark.parametrize("name", ["H", "c", "A"])
