@@ -88,7 +88,7 @@ def compare(
         The problem has no answer, or does not carry the weights asked for.
     """
     ensure_callable(progress, "progress")
-    ensure_known(options, (*ComparisonOptions.__dataclass_fields__, *ASKING))
+    ensure_known(options, (*ComparisonOptions.__dataclass_fields__, *ASKING, "progress"))
     asking = cast(AskingKeywords, {key: value for key, value in options.items() if key in ASKING})
     others = cast(ComparisonKeywords, {key: value for key, value in options.items() if key not in ASKING})
     read = ComparisonOptions.of(formulations, weights, penalties, **others)

@@ -99,7 +99,9 @@ class MovingBody:
         if bar.quantity == "displacement" and bar.bar is not None and bar.value is not None:
             if self.unsure <= bar.bar * bar.value:
                 return bar
-            why = f"not known: it has a part of the {' and the '.join(self.known.unknown)}, whose amount is not known"
+            moving = " and the ".join(self.known.unknown)
+            amount = "amount is" if len(self.known.unknown) == 1 else "amounts are"
+            why = f"not known: it has a part of the {moving}, whose {amount} not known"
             return replace(bar, value=None, bar=None, at=None, note=why)
         if bar.quantity not in ("motion", "rotation") or bar.value is None or bar.bar is None:
             return bar

@@ -82,8 +82,9 @@ class SecondMotions:
         before, further = abs(float(self._before[j])), abs(float(self._change[j]))
         seen = abs(first.contact.rigid_motions @ self._modes[:, j])
         i = int(np.argmax(first.contact.weights * first.solution.pressure * seen))
+        why = " against the load" if driven[j] else f": {slopes}" if self._push[j] else ""
         words = (
-            f"No contact holds the {motion}{' against the load' if driven[j] else f': {slopes}'}. Only slopes and "
+            f"No contact holds the {motion}{why}. Only slopes and "
             "levers as drawn seem to hold it, and they move with the body. Along this motion contact moves by "
             f"{first.length(before)}, and from there on by {first.length(further)}. Prescribe a displacement that "
             "holds the body in this direction."

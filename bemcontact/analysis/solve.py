@@ -210,16 +210,16 @@ def solve(
         If the solver of QP3 breaks down, and leaves no point.
     """
     ensure_callable(progress, "progress")
-    read, asking = read_options(formulation, weights, options)
+    read, asking = read_options(formulation, weights, options, "progress")
     ensure_kind(problem)
     return solve_with(read, asked(problem, asking), progress)
 
 
 def read_options(
-    formulation: FormulationName | str, weights: Weights | str, options: SolvingKeywords
+    formulation: FormulationName | str, weights: Weights | str, options: SolvingKeywords, *own: str
 ) -> tuple[SolveOptions, AskingKeywords]:
-    """Options of a solution, and what is asked; `OptionError` as of `SolveOptions`."""
-    ensure_known(options, (*SolveOptions.__dataclass_fields__, *ASKING))
+    """Options of a solution, and what is asked; `OptionError` as of `SolveOptions`, with `own` names of the caller."""
+    ensure_known(options, (*SolveOptions.__dataclass_fields__, *ASKING, *own))
     asking = {key: value for key, value in options.items() if key in ASKING}
     others = {key: value for key, value in options.items() if key not in ASKING}
     return SolveOptions.of(formulation, weights, **cast(SolveKeywords, others)), cast(AskingKeywords, asking)
@@ -400,7 +400,8 @@ def random_starts(
         As of `solve`.
     """
     ensure_callable(progress, "progress")
-    ensure_known(options, (*StatementKeywords.__annotations__, *ASKING))
+    own = ("formulation", "weights", "count", "seed", "progress")
+    ensure_known(options, (*StatementKeywords.__annotations__, *ASKING, *own))
     ensure_whole(count, STARTS, 1)
     ensure_whole(seed, "seed", 0)
     random: SolvingKeywords = {**options, "start": StartName.RANDOM, "starts": count, "seed": seed}

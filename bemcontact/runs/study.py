@@ -13,7 +13,7 @@ from typing import Any, Unpack
 from bemcontact.analysis.solve import Progress
 from bemcontact.checks.arguments import ensure_callable, file_path, text_of_argument, whole_number
 from bemcontact.errors import ProblemError
-from bemcontact.options import AskingKeywords
+from bemcontact.options import ASKING, AskingKeywords, ensure_known
 from bemcontact.problems.problem import Problem
 from bemcontact.report.folder_kinds import STUDY, ensure_folder_writable
 from bemcontact.studies.cluster import connected, ensure_dask, rows_by_dask
@@ -114,6 +114,7 @@ def study(
         If the folder cannot be written, or holds other files.
     """
     ensure_callable(progress, "progress")
+    ensure_known(asking, ("output", "out", "workers", "scheduler", "progress", *ASKING))
     plan = study_plan(problem, vary, **asking)
     shown = chosen(output, problem)
     place = None if out is None else file_path(out, "out")
@@ -219,7 +220,9 @@ class _Pace:
         words = f"{done} of {self._total} members"
         if done > self._before and passed > 0:
             rate = (done - self._before) / passed
-            words += f", {rate:.2g} per second, about {_duration((self._total - done) / rate)} left"
+            words += f", {rate:.2g} per second"
+            if done < self._total:
+                words += f", about {_duration((self._total - done) / rate)} left"
         elif self._before:
             words += ", from the journal"
         _report(self._progress, STAGE, words)

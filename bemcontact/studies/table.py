@@ -112,8 +112,8 @@ class StudyTable(Recorded, Tabular):
 
     @staticmethod
     def unknown(row: MemberRow, column: str) -> bool:
-        """Whether the amount of a motion or a rotation of a member is not known."""
-        moved = column.partition(".")[0] in OF_MOVERS and column in row.outputs
+        """Whether the amount of a motion, a rotation or the largest displacement of a member is not known."""
+        moved = column.partition(".")[0] in (*OF_MOVERS, "displacement") and column in row.outputs
         return moved and row.outputs[column].value is None
 
     def table(self) -> dict[str, list[Any]]:

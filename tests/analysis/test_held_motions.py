@@ -69,6 +69,16 @@ def test_a_half_disk_that_spins_on_two_planes_has_no_angle(left: float, right: f
     assert ": not known; only slopes and levers as drawn hold it" in told
 
 
+def test_a_couple_that_spins_a_half_disk_on_planes_is_not_blamed_on_slopes():
+    """A couple of 0.67 about its center spins it; planes have no slope, and "slopes push by 0 %" was said."""
+    loads = {"top": {"traction": {"y": {"constant": -20.0, "x": -0.001}}}}
+    result = bemcontact.solve(half_disk(-130, -30).with_value("conditions", loads))
+    assert not result.certified
+    assert result.penetration is not None
+    assert result.penetration.words.startswith("No contact holds the ")
+    assert "slopes push" not in result.penetration.words
+
+
 def test_a_disk_that_stands_on_a_plane_has_no_angle():
     """It may roll: that it turns by 0, as was printed, is one state of many. Its depth is held."""
     rim = {"name": "rim", "kind": "arc", "center": [0, 10], "radius": 10, "angles": [0, 360]}

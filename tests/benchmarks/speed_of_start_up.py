@@ -20,7 +20,7 @@ MODELS = sorted(Path(bemcontact.__file__).parents[1].glob("models/**/*.yaml"))
 TEXT = f"""\
 CPU time of whole processes. The base is `python -c "import {BASE}"`. `check` and `solve` read the
 cylinder of the paper, and `solve` finds a mesh for it. *stated mesh* solves the variant of this name. The targets
-are for these. The second table has all shipped models: there most of `solve` is the work on larger problems.
+are for these. The second table has shipped models: there most of `solve` is the work on larger problems.
 """
 
 

@@ -25,7 +25,7 @@ machine changes CPU times too, for it takes room in caches: the machine should b
 The speed of a processor varies within seconds or minutes, and not alike for Python and for products of matrices. So
 what is compared runs in turns, close to each other: a, b, a, b and so on. A ratio is the median of the ratios of
 neighboring turns; it need not be that of the times beside it. Half of the ratios are between their quartiles. A target
-is met if both quartiles meet it, and not met if neither does. Otherwise it is *within noise*: the run does not tell.
+is met if both quartiles meet it, and not met if neither does. Otherwise it is *within noise*: this run cannot decide.
 """
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import bemcontact
+from bemcontact.errors import OptionError
 from bemcontact.runs import study as running
 from bemcontact.studies.journal import JOURNAL
 from bemcontact.studies.work import Task
@@ -128,7 +129,8 @@ def test_progress_says_how_far_it_has_come_and_how_long_it_takes(tmp_path: Path)
     bemcontact.study(CYLINDER, VARIED, ["peak"], **told)
     assert said[0] == ("studying", "0 of 6 members")
     assert said[6][1].startswith("6 of 6 members, ")
-    assert said[6][1].endswith("about 0 s left")
+    assert said[6][1].endswith(" per second")
+    assert said[5][1].endswith(" left")
     assert said[7] == ("report", "")
 
 
@@ -142,6 +144,11 @@ def test_a_worker_that_ends_does_not_end_the_program_by_its_pipe():
         assert signal.getsignal(signal.SIGPIPE) is signal.SIG_DFL
     finally:
         signal.signal(signal.SIGPIPE, before)
+
+
+def test_a_wrong_name_of_an_argument_is_answered_with_the_right_one():
+    with pytest.raises(OptionError, match="there is no option 'wrkers'; did you mean 'workers'"):
+        bemcontact.study(CYLINDER, VARIED, **{"wrkers": 2})
 
 
 def test_a_foreign_folder_is_left_alone_before_any_work(tmp_path: Path, solved: list[int]):

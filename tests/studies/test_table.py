@@ -72,15 +72,17 @@ def test_the_worst_status_counts_first():
 def test_only_what_concerns_the_outputs_of_the_table_is_said():
     """A journal keeps what a run with von_mises has found; a table of peaks has no word about infinite stress."""
     found = replace(row(0, 1.5, peak=Reading(value=3.0), von_mises=Reading(value=5.0)), stress="stress is infinite")
-    moved = row(1, 2.5, peak=Reading(value=3.0), **{"rotation.wheel": Reading(value=None)})
+    unknown = dict.fromkeys(("rotation.wheel", "displacement"), Reading(value=None))
+    moved = row(1, 2.5, peak=Reading(value=3.0), **unknown)
     tables = {
         outputs: StudyTable(
             name="s", units=Units(), axes=axes_of({"a": [1.5, 2.5]}, Units()), outputs=outputs, rows=(found, moved)
         ).table()
-        for outputs in (("peak",), ("von_mises",), ("peak", "rotation"))
+        for outputs in (("peak",), ("von_mises",), ("peak", "rotation"), ("displacement",))
     }
     assert tables["peak",]["message"] == ["", ""]
     assert tables["von_mises",]["message"] == ["stress is infinite", ""]
     last = tables["peak", "rotation"]
     assert last["message"] == ["", "rotation.wheel is not known"]
+    assert tables["displacement",]["message"] == ["", "displacement is not known"]
     assert last["rotation.wheel"] == last["rotation.wheel_error"] == [None, None]
