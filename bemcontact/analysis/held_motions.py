@@ -47,7 +47,9 @@ from bemcontact.problems.edge_places import curvatures, nearest_on, places_at
 MOVES_ON = 0.5
 """Eigenvalue of T from which the series adds as much as the first motion, or more, so that its amount is not known."""
 TAKES_PART = 0.01
-"""Part of a motion in one whose amount is not known from which its own is not known."""
+"""Part of a motion in one whose amount is not known from which its own is not known.
+
+Nor is it if as much again of the latter changes it by a part that is noted."""
 NOT_KNOWN = "not known: only slopes and levers as drawn hold it, which move with the body"
 """Note on a motion without an amount."""
 UNSEEN = 1e-9
@@ -153,12 +155,14 @@ def held_motions(gaps: SurfaceGaps, body: Body, contact: CondensedContact, solut
     series = _answers(contact, pressed, gained) / sizes * sizes[:, None]  # T of motions of size one
     form, ways, count = scipy.linalg.schur(series, sort=lambda real, imaginary=0.0: real >= MOVES_ON)
     free, others, known = ways[:, :count], ways[:, count:], form[count:, count:]
-    held = row_norms(free) <= TAKES_PART
-    first = others.T @ (solution.rigid_amplitudes * sizes)
-    further = np.linalg.solve(np.eye(len(known)) - known, known @ first)
-    errors = np.where(held, abs(others @ further) / sizes, 0.0)
     mixed = scipy.linalg.solve_sylvester(form[:count, :count], -known, form[:count, count:]) if count else form[:0]
     unheld = free @ (free.T + mixed @ others.T) if count else np.zeros_like(series)
+    amplitudes = solution.rigid_amplitudes * sizes
+    most = np.maximum(noted(body.problem) * abs(amplitudes), UNSEEN * abs(amplitudes).max())
+    held = (row_norms(free) <= TAKES_PART) & (abs(unheld @ amplitudes) <= most)
+    first = others.T @ amplitudes
+    further = np.linalg.solve(np.eye(len(known)) - known, known @ first)
+    errors = np.where(held, abs(others @ further) / sizes, 0.0)
     return HeldMotions(held, errors, unheld / sizes[:, None] * sizes)
 
 
