@@ -98,14 +98,17 @@ def environment() -> dict[str, str]:
 
 
 def before(file: Path, run: Run) -> Mapping[str, Outcome]:
-    """Sections of an earlier run in the same folder, if it was one of the same kind."""
+    """Sections of an earlier run in the same folder, if it was one of the same kind; else its page is put aside."""
     if not file.is_file():
         return {}
     with suppress(ValidationError):  # from another version of this benchmark
         earlier = RUN.validate_json(file.read_bytes())
         if (earlier.machine, earlier.quick) == (run.machine, run.quick):
             return earlier.outcomes
-    print("the page in this folder is from another machine, version or setting, and is replaced")
+    for old in (file, file.with_suffix(".md")):
+        with suppress(FileNotFoundError):
+            old.replace(old.with_stem(f"{old.stem}_before"))
+    print("the page in this folder is from another machine, version or setting; it is now speed_before.md")
     return {}
 
 

@@ -147,6 +147,7 @@ def test_other_sections_are_kept_from_the_same_machine_only(tmp_path):
     other = replace(run_with(), machine={"Processor": "slide rule"})
     assert before(tmp_path / "speed.json", run_with()).keys() == {"solve"}
     assert before(tmp_path / "speed.json", other) == {}
+    assert {file.name for file in tmp_path.iterdir()} == {"speed_before.json", "speed_before.md"}
     (tmp_path / "speed.json").write_text("{}")
     assert before(tmp_path / "speed.json", run_with()) == {}
 

@@ -33,7 +33,8 @@ ROUNDED = 4.0 * EPS / SEEN
 CLEAR = 1e3
 """A multiplier of the wrong sign is released without refinement if it exceeds the zero of all by this factor."""
 SHRINKS, CONJUGATE = 0.25, 0.1
-"""The reduced gradient is at most a root of this part after a Newton step, if ZᵀHZ differs by no more from one."""
+"""A whole Newton step after another one has at most the first part of its slope, unless Z is worn: entries of ZᵀHZ then
+differ from those of the identity by more than the second number."""
 WORTH_EDGES = 250
 """Number of variables from which iterations saved by steepest-edge pricing are worth its time."""
 

@@ -81,8 +81,8 @@ class QPOptions:
         component
     scale : equilibrate rows and variables by powers of two, which changes no digit of the data
     search : most faces of the critical cone that are examined behind zero multipliers before the status is undecided
-    by_numba : whether machine code of numba, if installed, takes the iterations of programs of up to 250 variables; if
-        None, it does if numba was imported before the first call
+    by_numba : whether machine code of numba, if installed, scales programs of up to 250 variables and takes their
+        iterations; if None, it does if numba was imported before the first call
     log : called with each ``LogLine``; with machine code at the end of it
 
     Raises
