@@ -13,27 +13,28 @@ PACKAGE = TESTS.parent / "bemcontact"
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
 FOUNDATION = (
-    "cached", "errors", "checks", "arrays", "threads", "compilation", "serialization", "options", "version", "files",
-    "views",
+    "cached", "frozen", "errors", "checks", "arrays", "threads", "compilation", "serialization", "options", "version",
+    "files", "views",
 )  # fmt: skip
 
 ROOMS = {
     "cached": (),
-    "errors": (),
+    "frozen": (),
+    "errors": ("frozen",),
     "checks": ("errors",),
     "arrays": ("errors", "checks"),
     "threads": (),
     "compilation": (),
     "serialization": ("errors", "checks"),
-    "options": ("errors", "checks"),
+    "options": ("frozen", "errors", "checks"),
     "version": (),
     "views": (),
     "files": ("errors",),
-    "problems": ("cached", "errors", "checks", "arrays", "options", "views"),
-    "spec": ("errors", "checks", "arrays", "files", "problems"),
+    "problems": ("cached", "frozen", "errors", "checks", "arrays", "options", "views"),
+    "spec": ("frozen", "errors", "checks", "arrays", "files", "problems"),
     "contact": (*FOUNDATION,),
     "bem": (*FOUNDATION, "problems", "contact"),
-    "formulations.local_solver": ("cached", "errors", "checks", "arrays", "threads", "compilation"),
+    "formulations.local_solver": ("cached", "frozen", "errors", "checks", "arrays", "threads", "compilation"),
     "formulations": (*FOUNDATION, "contact", "formulations.local_solver"),
     "assessment": (*FOUNDATION, "contact"),
     "adaptivity": (*FOUNDATION, "problems", "contact", "bem", "formulations", "assessment"),
