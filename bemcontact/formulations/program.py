@@ -4,9 +4,10 @@ x = (u_n, p), or (u_n, p, a) where the compliance rows bring in the amplitudes; 
 `bemcontact.formulations.scaling`, but with u_n itself and not the gap, so that the null vector is that of [SS92].
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.linalg import matrix_rank
 from scipy.linalg import block_diag
 
 from bemcontact.arrays import Array
@@ -17,6 +18,9 @@ from bemcontact.formulations.local_solver.minimize import minimize_qp
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult
 from bemcontact.formulations.scaling import ScaledContact, scale
 from bemcontact.options import Rows
+
+WORTH_ELIMINATION = 250
+"""Number of variables from which QP1 is minimized over the gaps alone."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -75,14 +79,29 @@ class Program:
         return linear
 
     @property
-    def inertia(self) -> tuple[int, int, int]:
-        """Numbers of positive, zero and negative eigenvalues of the Hessian Q + (2/μ) EᵀE.
+    def gives_pressure(self) -> bool:
+        """Whether nothing is penalized, and the equations give each pressure, as stiffness rows do."""
+        return not self.penalized.matrix.size and _pressure_factors(self.equations, len(self.weights)) is not None
 
-        From [[Q, Eᵀ], [E, -μ/2]], whose inertia is that and m negative ones (Haynsworth 1968): it is free of 1/μ.
+    @property
+    def inertia(self) -> tuple[int, int, int]:
+        """Numbers of positive, zero and negative eigenvalues of the Hessian Q + (2/μ) EᵀE, Q = [[0, Jᵀ], [J, 0]].
+
+        From [[Q, Eᵀ], [E, -μ/2]], whose inertia is that and m negative ones (Haynsworth 1968): it is free of 1/μ. With
+        E = [K, -D], D diagonal, it is (n, 0, n) and that of JᵀD⁻¹K + KᵀD⁻¹J - (μ/2) JᵀD⁻²J.
         """
-        n, (m, N) = len(self.weights), self.penalized.matrix.shape
+        n, J, (m, N) = len(self.weights), self.weights, self.penalized.matrix.shape
+        if m == 0:
+            diagonal = J.diagonal()
+            rank = np.count_nonzero(diagonal) if np.count_nonzero(J - np.diag(diagonal)) == 0 else matrix_rank(J)
+            return int(rank), N - 2 * int(rank), int(rank)
+        if (D := _pressure_factors(self.penalized, n)) is not None:
+            weighted = J / D[:, None]
+            work = weighted.T @ self.penalized.matrix[:, :n]
+            positive, zero, negative = inertia(work + work.T - 0.5 * self.penalty * (weighted.T @ weighted))
+            return n + positive, zero, negative
         bordered = np.zeros((N + m, N + m))
-        bordered[:n, n : 2 * n], bordered[n : 2 * n, :n] = self.weights.T, self.weights
+        bordered[:n, n : 2 * n], bordered[n : 2 * n, :n] = J.T, J
         bordered[N:, :N], bordered[:N, N:] = self.penalized.matrix, self.penalized.matrix.T
         bordered[N:, N:] = -0.5 * self.penalty * np.eye(m)
         positive, zero, negative = inertia(bordered)
@@ -118,6 +137,15 @@ def equilibrium(scaled: ScaledContact, size: int) -> Equations:
     return Equations(matrix=matrix, right=-scaled.motion_load)
 
 
+def _pressure_factors(equations: Equations, n: int) -> Array | None:
+    """D (n,), positive, if the equations are K u_n - D p = r over (u_n, p), with D diagonal; else None."""
+    m, N = equations.matrix.shape
+    if not m == n == N - n or np.count_nonzero(equations.matrix[:, n:]) != n:
+        return None
+    D = -equations.matrix[:, n:].diagonal()
+    return D if (D > 0.0).all() else None
+
+
 def no_equations(size: int) -> Equations:
     """No equations, over x of `size` entries."""
     return Equations(matrix=np.zeros((0, size)), right=np.zeros(0))
@@ -131,10 +159,14 @@ def lower_bounds(contact: CondensedContact, size: int) -> Array:
 
 
 def minimize_program(program: Program, start: Array, max_iterations: int | None) -> QPResult:
-    """Minimize a program by the local solver from a start (N,); the result is over x with s after it.
+    """Minimize a program by the local solver from a start (N,); the point and ray of the result are over x.
 
-    Penalized equations become √μ s = E x - e with |s|² in the objective, which avoids the condition of EᵀE.
+    Penalized equations become √μ s = E x - e with |s|² in the objective, which avoids the condition of EᵀE; s follows
+    x in the point and the ray. In large programs pressures that the equations give are eliminated.
     """
+    start = np.maximum(start, program.lower)
+    if len(program.lower) > WORTH_ELIMINATION and program.gives_pressure:
+        return _minimize_over_gaps(program, start, max_iterations)
     E, e = program.penalized.matrix, program.penalized.right
     A, b = program.equations.matrix, program.equations.right
     n, (m, N), root = len(program.weights), E.shape, np.sqrt(program.penalty)
@@ -143,7 +175,6 @@ def minimize_program(program: Program, start: Array, max_iterations: int | None)
     c = np.zeros(N + m)
     c[n : 2 * n] = -J @ program.lower[:n]
     right = np.concatenate([b, e])
-    x = np.maximum(start, program.lower)
     return minimize_qp(
         H,
         c,
@@ -151,6 +182,34 @@ def minimize_program(program: Program, start: Array, max_iterations: int | None)
         cl=right,
         cu=right,
         bl=np.concatenate([program.lower, np.full(m, -np.inf)]),
-        x0=np.concatenate([x, (E @ x - e) / root]),
+        x0=np.concatenate([start, (E @ start - e) / root]),
         options=QPOptions(max_iterations=max_iterations),
+    )
+
+
+def _minimize_over_gaps(program: Program, start: Array, max_iterations: int | None) -> QPResult:
+    """Minimize QP1 over the gaps ε + u_n, with p = D⁻¹(K u_n - r) from its equations K u_n - D p = r, D > 0 diagonal.
+
+    The bounds of the pressures are the rows K u_n >= r. The points on the way are those of a start in (u_n, p) that
+    satisfies the equations.
+    """
+    J, n = program.weights, len(program.weights)
+    K, r, low = program.equations.matrix[:, :n], program.equations.right, program.lower[:n]
+    D, right = -program.equations.matrix[:, n:].diagonal(), r - K @ low
+    work = J.T @ (K / D[:, None])
+    result = minimize_qp(
+        work + work.T,
+        -J.T @ (right / D),
+        A=K,
+        cl=right,
+        bl=np.zeros(n),
+        x0=start[:n] - low,
+        options=QPOptions(max_iterations=max_iterations),
+    )
+    gap, ray = result.x, result.ray
+    pressure = np.where(result.working_set[n:], 0.0, np.maximum((K @ gap - right) / D, 0.0))
+    return replace(
+        result,
+        x=np.concatenate([low + gap, pressure]),
+        ray=None if ray is None else np.concatenate([ray, (K @ ray) / D]),
     )

@@ -11,7 +11,7 @@ from scipy.linalg import null_space
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import ProblemError
-from bemcontact.formulations import FORMULATIONS, complementarity, qp1, qp3
+from bemcontact.formulations import FORMULATIONS, complementarity, program, qp1, qp3
 from bemcontact.formulations.scaling import scale, scaled_point
 from bemcontact.formulations.starts import Start
 from bemcontact.options import Rows, SolveOptions, Weights
@@ -94,6 +94,36 @@ def test_all_statements_have_one_solution(seed, k, rows):
             scaled_point(problem, direct.pressure, direct.rigid_amplitudes)[1],
             atol=tolerance * 10,
         )
+
+
+@pytest.mark.parametrize("k", [0, 1, 2, 3])
+@pytest.mark.parametrize("scattered", [False, True])
+def test_many_points_are_solved_over_their_gaps(k, scattered):
+    """Beyond 250 unknowns the stiffness rows eliminate the pressures: it is the same program, from any start."""
+    n = 130
+    problem = random_contact(2, n, k)
+    direct = complementarity.solve(problem)
+    start = "random" if scattered else None
+    solution = qp1.solve(problem, SolveOptions.of("qp1", start=start, polish=False))
+    search = solution.search
+    assert solution.status is Status.SOLVED
+    assert search is not None
+    np.testing.assert_allclose(solution.pressure, direct.pressure, atol=1e-12 * direct.pressure.max())
+    np.testing.assert_allclose(solution.displacement, direct.displacement, atol=1e-12 * problem.scales.displacement)
+    assert (solution.pressure == 0.0).sum() == (direct.pressure == 0.0).sum()  # bounds that are held hold exactly
+    assert search.inertia == (n, 0, n)  # of the program in displacements and pressures
+    assert search.reduced_inertia_end[1:] == (0, 0)
+    assert abs(solution.history[-1].values[-1]) < 1e-10  # infeasibility and objective vanish at the contact state
+
+
+def test_eliminated_pressures_change_no_answer(monkeypatch):
+    """What small programs say of a solution, of none, and of a load that nothing holds, over the gaps too."""
+    monkeypatch.setattr(program, "WORTH_ELIMINATION", 0)
+    test_against_all_contact_sets("qp1", 6, 1)
+    test_a_start_at_the_solution_stays_there()
+    test_one_point_of_negative_compliance()
+    test_infeasible_load_is_named()
+    test_iteration_limit_is_named()
 
 
 @pytest.mark.parametrize("k", [0, 2])

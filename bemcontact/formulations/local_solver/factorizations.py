@@ -16,6 +16,7 @@ BLOCK = 32
 """Block size of LAPACK, in columns."""
 dot: Any = get_blas_funcs("dot", dtype=np.float64)  # of small vectors, in a third of the time of NumPy's
 ger: Any = get_blas_funcs("ger", dtype=np.float64)
+symv: Any = get_blas_funcs("symv", dtype=np.float64)
 trsm: Any = get_blas_funcs("trsm", dtype=np.float64)
 
 

@@ -11,6 +11,7 @@ from scipy import sparse
 from bemcontact.arrays import Array, BoolArray, real_array
 from bemcontact.cached import cached_property
 from bemcontact.errors import ProblemError
+from bemcontact.formulations.local_solver.factorizations import symv
 
 Sides = NDArray[np.int8]
 
@@ -69,7 +70,10 @@ class Statement:
 
     def bent(self, x: Array) -> Array:
         """H x."""
-        return self._factors[0].dot(x)
+        H = self._factors[0]
+        if x.ndim == 1 and x.size >= WORTH_SPARSE and H is self.H:
+            return symv(1.0, H.T, x)  # which reads half of H
+        return H.dot(x)
 
     def curved(self, size: Array) -> Array:
         """Sum of the sizes of the terms of H x, from the sizes of x."""

@@ -41,15 +41,17 @@ ALIKE = 1e-12
 FEW_DIGITS = 1e-12
 """Relative rounding of a component of a point on rows beyond which remainders are computed with twice the digits."""
 
-FEW = 400
-"""Number of constraints up to which products with all rows are as fast as with some."""
+FEW, MOST = 400, 0.75
+"""Number of constraints up to which products with all rows are as fast as with some, and the part of the rows that is
+held up to which they are: some rows are copied for the product."""
 
 EXACT, BLUNT = 1e-15, 1e-10
 """Product of a unit direction with the rows that it does not change: up to the first it needs no correction, and from
 the second N has lost digits."""
 
-SHARP, WEAR = 1e-12, 1e-8
-"""Relative size of a refinement above which refinements are needed, and above which N is computed again."""
+SHARP, BLURRED, WORN = 1e-12, 1e-8, 1e-6
+"""Relative size of a refinement above which refinements are needed, above which two are, and above which N is computed
+again: each refinement multiplies the error by this size."""
 
 
 class WorkingSet:
@@ -121,7 +123,7 @@ class WorkingSet:
         """[d; A d] of a direction that changes nothing held."""
         A = self.statement.A
         m, n = A.shape
-        if 2 * (self.size - self.temporary) < m or n + m <= FEW:
+        if self.size - self.temporary < MOST * m or n + m <= FEW:
             return self.statement.values(direction)
         values = np.zeros(n + m)
         values[:n] = direction
@@ -185,10 +187,15 @@ class WorkingSet:
         The `rest` of the gradient without its part along the rows is changed too.
         """
         correction = self.inverse.against(rest)
-        if dot(correction, correction) > WEAR**2 * dot(of_rows, of_rows):
+        size, whole = dot(correction, correction), dot(of_rows, of_rows)
+        if size > WORN**2 * whole:
             self._renew()
             of_rows = self.inverse.against(gradient)
             np.subtract(gradient, of_rows.dot(self.W), rest)
+            correction = self.inverse.against(rest)
+        elif size > BLURRED**2 * whole:
+            rest -= correction.dot(self.W)
+            of_rows = of_rows + correction
             correction = self.inverse.against(rest)
         rest -= correction.dot(self.W)
         return of_rows + correction
