@@ -1,10 +1,8 @@
 """Tables of the contact zones of a result, or of all load cases: in words for pages, and as CSV."""
 
-import csv
-import io
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
-from itertools import chain
+from collections.abc import Callable, Iterator
+from itertools import chain, starmap
 from typing import Any
 
 import numpy as np
@@ -25,6 +23,7 @@ from bemcontact.report.facts import (
 )
 from bemcontact.report.formatting import number, vector, with_unit, zero_if_negligible
 from bemcontact.report.peak_places import level_zones
+from bemcontact.serialization import csv_text
 
 ZONE_COLUMNS = (
     "case", "zone", "intervals", "length", "peak", "peak_error", "peak_x", "peak_y", "force_x", "force_y",
@@ -125,19 +124,12 @@ def _intensities(record: JsonObject, zone: str, units: Units) -> Iterator[str]:
             yield f"K = {value} in {bar['note']} at {vector(bar['at'], units.length, scale=coordinate_size(record))}"
 
 
-def zones_csv(results: Result | CaseResults) -> str:
-    """Write a line for each zone of each load case: what it carries, all its intervals of contact together.
+def _zone_lines(case: str, result: Result) -> Iterator[list[Any]]:
+    """A line for each zone: what it carries, all its intervals of contact together.
 
     Errors are absolute, in the unit of the number before them; empty where there is no number. The body is the one of
     several on which the force acts.
     """
-    return _written(
-        ZONE_COLUMNS, (row for case, result in by_case(results).items() for row in _zone_lines(case, result))
-    )
-
-
-def _zone_lines(case: str, result: Result) -> Iterator[list[Any]]:
-    """The lines of a result in `zones_csv`."""
     contact, pressure = result.contact, result.solution.pressure
     bars = {(bar.quantity, bar.zone, bar.interval): bar for bar in result.accuracy.bars}
     for order, zone in enumerate(contact.zone_names):
@@ -154,19 +146,12 @@ def _zone_lines(case: str, result: Result) -> Iterator[list[Any]]:
         ]  # fmt: skip
 
 
-def intervals_csv(results: Result | CaseResults) -> str:
-    """Write a line for each interval of contact of each load case: its ends, and what it alone carries.
+def _interval_lines(case: str, result: Result) -> Iterator[list[Any]]:
+    """A line for each interval of contact: its ends, and what it alone carries.
 
     Errors are absolute, in the unit of the number before them; empty where they are not known. A peak is empty where
     that of the zone is infinite.
     """
-    return _written(
-        INTERVAL_COLUMNS, (row for case, result in by_case(results).items() for row in _interval_lines(case, result))
-    )
-
-
-def _interval_lines(case: str, result: Result) -> Iterator[list[Any]]:
-    """The lines of a result in `intervals_csv`."""
     bars, count = {(bar.quantity, bar.zone, bar.interval): bar for bar in result.accuracy.bars}, Counter[str]()
     for item in result.footprint.intervals:
         order = count[item.zone]
@@ -191,15 +176,8 @@ def _error(bar: ErrorBar | None) -> float | str:
     return "" if bar is None or bar.bar is None or bar.value is None else abs(bar.value) * bar.bar
 
 
-def points_csv(results: Result | CaseResults) -> str:
-    """Write a line for each contact point of each load case: place, normal, pressure, gap, and whether it touches."""
-    return _written(
-        POINT_COLUMNS, (row for case, result in by_case(results).items() for row in point_lines(case, result))
-    )
-
-
 def point_lines(case: str, result: Result) -> Iterator[list[Any]]:
-    """The lines of a result in `points_csv`, zone by zone and along the boundary."""
+    """A line for each contact point, along the boundary: place, normal, pressure, gap, and whether it touches."""
     contact = result.contact
     for run in np.unique(contact.run).tolist():
         for i in contact.points_of_run(run).tolist():
@@ -210,26 +188,11 @@ def point_lines(case: str, result: Result) -> Iterator[list[Any]]:
             ]  # fmt: skip
 
 
-def _written(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
-    """CSV of a table."""
-    stream = io.StringIO()
-    table = csv.writer(stream, lineterminator="\n")
-    table.writerow(header)
-    table.writerows(rows)
-    return stream.getvalue()
-
-
-def stress_csv(results: Result | CaseResults) -> str:
-    """Write a line for each node of each element of each load case: stress along the edge, pressure, shear.
-
-    Where elements meet there is a line for either side. Stress is empty where it is infinite.
-    """
-    lines = (_stress_lines(case, result) for case, result in by_case(results).items())
-    return _written(STRESS_COLUMNS, chain.from_iterable(lines))
-
-
 def _stress_lines(case: str, result: Result) -> Iterator[list[Any]]:
-    """The lines of a result in `stress_csv`."""
+    """A line for each node of each element: stress along the edge, pressure, shear; empty where stress is infinite.
+
+    Where elements meet there is a line for either side.
+    """
     for edge, along in result.boundary_stress().items():
         values = [
             part.ravel().tolist() for part in (along.arc, along.hoop, along.pressure, along.shear, along.von_mises)
@@ -238,18 +201,11 @@ def _stress_lines(case: str, result: Result) -> Iterator[list[Any]]:
             yield [case, edge, *point, *("" if np.isnan(number) else number for number in numbers)]
 
 
-def largest_stresses_csv(results: Result | CaseResults) -> str:
-    """Write a line for each largest stress of each load case, and for each place where stress is infinite.
-
-    The error is absolute; empty where it is not known. Where stress is infinite there is no value. If there is no
-    largest stress, the last column says why.
-    """
-    lines = (_largest_lines(case, result) for case, result in by_case(results).items())
-    return _written(LARGEST_COLUMNS, chain.from_iterable(lines))
-
-
 def _largest_lines(case: str, result: Result) -> Iterator[list[Any]]:
-    """The lines of a result in `largest_stresses_csv`."""
+    """A line for each largest stress, and for each place where stress is infinite, which has no value.
+
+    The error is absolute; empty where it is not known. If there is no largest stress, the last column says why.
+    """
     largest = result.largest_stresses()
     peaks = [("max_shear", zone, peak, SHEAR_BELOW.format(zone)) for zone, peak in largest.shear.items()]
     peaks += [("von_mises", "inside", largest.inside, INSIDE), ("von_mises", "boundary", largest.boundary, ON_BOUNDARY)]
@@ -263,14 +219,25 @@ def _largest_lines(case: str, result: Result) -> Iterator[list[Any]]:
         yield [case, "von_mises", "infinite", "", "", x, y, *[""] * 4]
 
 
-def tables_of(results: Result | CaseResults) -> Mapping[str, str]:
+TABLES: dict[str, tuple[tuple[str, ...], Callable[[str, Result], Iterator[list[Any]]]]] = {
+    "zones.csv": (ZONE_COLUMNS, _zone_lines),
+    "intervals.csv": (INTERVAL_COLUMNS, _interval_lines),
+    "points.csv": (POINT_COLUMNS, point_lines),
+    "stress.csv": (STRESS_COLUMNS, _stress_lines),
+    "largest_stresses.csv": (LARGEST_COLUMNS, _largest_lines),
+}
+"""Name of a file -> columns of its table, and the lines of a result, which begin with the load case."""
+OF_STRESS = ("stress.csv", "largest_stresses.csv")
+"""Those that need the boundary of the body."""
+
+
+def table_of(results: Result | CaseResults, name: str) -> str:
+    """A table as CSV, by the name of its file."""
+    columns, lines = TABLES[name]
+    return csv_text(columns, chain.from_iterable(starmap(lines, by_case(results).items())))
+
+
+def tables_of(results: Result | CaseResults) -> dict[str, str]:
     """All tables as CSV, by the names of their files; of a condensed problem there is none of stress."""
-    tables = {
-        "zones.csv": zones_csv(results),
-        "intervals.csv": intervals_csv(results),
-        "points.csv": points_csv(results),
-    }
-    if all(result.boundary is not None for result in by_case(results).values()):
-        tables["stress.csv"] = stress_csv(results)
-        tables["largest_stresses.csv"] = largest_stresses_csv(results)
-    return tables
+    whole = all(result.boundary is not None for result in by_case(results).values())
+    return {name: table_of(results, name) for name in TABLES if whole or name not in OF_STRESS}

@@ -1,6 +1,5 @@
 """The table of a study: all members with their outputs and verdicts, as columns, CSV, Parquet and JSON."""
 
-import csv
 import io
 import json
 from collections import Counter
@@ -15,7 +14,7 @@ from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import is_real
 from bemcontact.contact.record import UnitsRecord
 from bemcontact.problems.units import Units
-from bemcontact.serialization import Leaf, Record, Recorded
+from bemcontact.serialization import Leaf, Record, Recorded, csv_text
 from bemcontact.studies.axes import Axis
 from bemcontact.studies.outputs import OF_MOVERS, columns_of
 from bemcontact.studies.rows import MemberRow, MemberStatus, in_one_message
@@ -142,11 +141,8 @@ class StudyTable(Recorded, Tabular):
 
     def to_csv(self) -> str:
         """Write the table as CSV, a line for each member; empty where there is no value."""
-        stream, columns = io.StringIO(), self.table()
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows(zip(*(map(_cell, column) for column in columns.values()), strict=True))
-        return stream.getvalue()
+        columns = self.table()
+        return csv_text(columns, zip(*(map(_cell, column) for column in columns.values()), strict=True))
 
     def save_parquet(self, path: Path) -> bool:
         """Write the table as Parquet; False without pyarrow, the extra ``parquet``."""
