@@ -231,7 +231,7 @@ OF_STRESS = ("stress.csv", "largest_stresses.csv")
 """Those that need the boundary of the body."""
 
 
-def table_of(results: Result | CaseResults, name: str) -> str:
+def result_table(results: Result | CaseResults, name: str) -> str:
     """A table as CSV, by the name of its file."""
     columns, lines = TABLES[name]
     return csv_text(columns, chain.from_iterable(starmap(lines, by_case(results).items())))
@@ -240,4 +240,4 @@ def table_of(results: Result | CaseResults, name: str) -> str:
 def tables_of(results: Result | CaseResults) -> dict[str, str]:
     """All tables as CSV, by the names of their files; of a condensed problem there is none of stress."""
     whole = all(result.boundary is not None for result in by_case(results).values())
-    return {name: table_of(results, name) for name in TABLES if whole or name not in OF_STRESS}
+    return {name: result_table(results, name) for name in TABLES if whole or name not in OF_STRESS}

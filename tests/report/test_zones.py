@@ -16,14 +16,14 @@ from bemcontact.report.contact_words import units_of
 from bemcontact.report.zones import (
     by_case,
     interval_rows,
-    table_of,
+    result_table,
     tables_of,
     zone_rows,
 )
 
 
 def read(results: Result | CaseResults, name: str) -> list[dict[str, str]]:
-    return [*csv.DictReader(io.StringIO(table_of(results, name)))]
+    return [*csv.DictReader(io.StringIO(result_table(results, name)))]
 
 
 @pytest.mark.parametrize("name", EACH)
