@@ -12,12 +12,14 @@ from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, SHEAR_BELOW
 from bemcontact.problems import Units
-from bemcontact.report.bars import NOTHING, JsonObject, bars_of, unit_of_bar, with_bar, without_digits_beyond
+from bemcontact.report.bars import NOTHING, JsonObject, error_of, infinite_peaks, with_bar, without_digits_beyond
 from bemcontact.report.facts import (
     contact_intervals,
     coordinate_size,
     force_errors,
     forces_on_bodies,
+    intensities,
+    moment_in_words,
     pressed_by,
     resolved_size,
 )
@@ -55,19 +57,17 @@ def zone_rows(record: JsonObject, units: Units) -> Iterator[dict[str, str]]:
 
     The record is the JSON of a result. A zone that does not touch has a dash for its peak and intensity.
     """
-    size, pressed = coordinate_size(record), pressed_by(record)
     forces, places = forces_on_bodies(record, units), [*contact_intervals(record, units, merged=True)]
     for zone, force in forces.items():
         own = [place for name, place in places if name == zone]
-        moment, errors = zero_if_negligible(record["moments"][zone], pressed * size), force_errors(record, zone)
-        known = size * sum(errors) / abs(moment) if moment and errors else None
+        errors = force_errors(record, zone)
         yield {
             "zone": zone,
             "contact": "; ".join(own) or "nowhere",
             "peak": _peak(record, zone, units) if own else NOTHING,
             "force": force,
-            "moment": with_unit(without_digits_beyond(moment, known), units.line_moment),
-            "intensity": "; ".join(_intensities(record, zone, units)) or NOTHING,
+            "moment": moment_in_words(record["moments"][zone], sum(errors) if errors else None, record, units),
+            "intensity": "; ".join(words for name, words in intensities(record, units) if name == zone) or NOTHING,
         }
 
 
@@ -95,7 +95,7 @@ def _peak_of_interval(record: JsonObject, interval: JsonObject, units: Units) ->
     peak, zone = interval["peak"], interval["zone"]
     if peak is None:
         return "infinite in this zone"
-    bar = next((item["bar"] for item in bars_of(record, "peak") if item["zone"] == zone), None)
+    bar = error_of(record, "peak", zone)
     others = (other["peak"]["pressure"] for other in record["intervals"] if other["zone"] == zone and other["peak"])
     largest = peak["pressure"] >= (1 - (bar or 0.0)) * max(others)
     value = with_bar(peak["pressure"], bar) if largest else without_digits_beyond(peak["pressure"], bar)
@@ -104,24 +104,15 @@ def _peak_of_interval(record: JsonObject, interval: JsonObject, units: Units) ->
 
 def _peak(record: JsonObject, zone: str, units: Units) -> str:
     """The largest pressure of a zone with its error and place, or that it is infinite."""
-    bar = next((item for item in bars_of(record, "peak") if item["zone"] == zone), None)
-    if bar is not None and bar["value"] is None:
+    if zone in infinite_peaks(record):
         return "infinite"
     own = [i for i, name in enumerate(record["zone"]) if name == zone]
     highest = max(own, key=lambda i: record["pressure"][i])
-    value = with_bar(record["pressure"][highest], None if bar is None else bar["bar"])
+    value = with_bar(record["pressure"][highest], error_of(record, "peak", zone))
     if zone in level_zones(record, 1.0):
         return f"{with_unit(value, units.stress)} all along"
     place = vector(record["nodes"][highest], units.length, scale=resolved_size(record))
     return f"{with_unit(value, units.stress)} at {place}"
-
-
-def _intensities(record: JsonObject, zone: str, units: Units) -> Iterator[str]:
-    """Intensities K of the infinite pressures of a zone, each with its law and place."""
-    for bar in bars_of(record, "intensity"):
-        if bar["zone"] == zone and bar["value"] is not None:
-            value = with_unit(with_bar(bar["value"], bar["bar"]), unit_of_bar(bar, units))
-            yield f"K = {value} in {bar['note']} at {vector(bar['at'], units.length, scale=coordinate_size(record))}"
 
 
 def _zone_lines(case: str, result: Result) -> Iterator[list[Any]]:
