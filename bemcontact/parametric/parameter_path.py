@@ -294,9 +294,4 @@ class ParameterPath(Leaf, Tabular):
 
 def _cell(numbers: Sequence[float]) -> str:
     """Numbers in one cell."""
-    return " ".join(map(repr, map(_plain, numbers)))
-
-
-def _plain(number: float) -> float:
-    """An integer or a float of Python, whose text is plain."""
-    return int(number) if isinstance(number, int | np.integer) else float(number)
+    return " ".join(map(repr, numbers))
