@@ -196,7 +196,8 @@ def _cell(value: Any) -> str:
 def _of_one_kind(values: Sequence[Any]) -> Sequence[Any]:
     """Values of a column as numbers, if all are, or else as texts."""
     if all(value is None or is_real(value) for value in values):
-        return values if all(isinstance(value, int) for value in values) else [_float(value) for value in values]
+        whole = all(isinstance(value, int) for value in values)
+        return values if whole else [None if value is None else float(value) for value in values]
     return [None if value is None else _cell(value) for value in values]
 
 
@@ -204,11 +205,6 @@ def _kind(values: Sequence[Any]) -> str:
     """Name that pyarrow has for the kind of values, which are of one kind or None."""
     first = next((value for value in values if value is not None), None)
     return "null" if first is None else {int: "int64", float: "float64", str: "string"}[type(first)]
-
-
-def _float(value: Any) -> float | None:
-    """A number as a float."""
-    return None if value is None else float(value)
 
 
 def sorted_rows(rows: Mapping[int, MemberRow]) -> tuple[MemberRow, ...]:
