@@ -14,7 +14,7 @@ smartquotes = False  # they would turn the two hyphens of an option into a dash
 nitpicky = True
 nitpick_ignore_regex = [
     ("py:obj", r"[a-z]\w*"),  # parameters and attributes of what is spoken of
-    ("py:obj", r"Goal|OUTCOMES|Quantity"),  # names inside of their modules
+    ("py:obj", r"Goal|Quantity"),  # names inside of their modules
     ("py:class", r"array|default .*"),  # words of `generated.tidy` in the types of fields
     ("py:class", r"(collections|cvxpy|numpy|os)\..*"),  # on other sites
 ]

@@ -1,11 +1,14 @@
-"""JSON of results and its JSON Schema, both from the fields of the results and the docstrings below these.
+"""JSON of results and its JSON Schema, both from the fields of the results and the docstrings below these; CSV.
 
 In all of them [L] is the unit of length and [p] that of pressure, force over length squared, in the user's units; a
 number without either has no unit.
 """
 
+import csv
+import io
 import json
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from functools import cache
 from typing import Annotated, Any, TypeVar
 
@@ -113,6 +116,15 @@ def json_text(record: dict[str, Any], indent: int | None = 2) -> str:
     `ValueError` for a number that is not finite.
     """
     return escaped_json(json.dumps(record, indent=indent, allow_nan=False, ensure_ascii=False))
+
+
+def csv_text(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """Write a table as CSV; what is None is empty."""
+    stream = io.StringIO()
+    table = csv.writer(stream, lineterminator="\n")
+    table.writerow(header)
+    table.writerows(rows)
+    return stream.getvalue()
 
 
 class _Schema(DescribedSchema):

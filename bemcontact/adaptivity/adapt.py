@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bemcontact.adaptivity.coarse_mesh import CoarseMesh, unknown
-from bemcontact.adaptivity.error_bars import SAFETY, error_bars, resolved
+from bemcontact.adaptivity.error_bars import SAFETY, error_bars, why_unresolved
 from bemcontact.adaptivity.fields import CaseAnswer, MeshDifference, Solved, solved, solved_state
 from bemcontact.adaptivity.hidden_changes import told_apart
 from bemcontact.adaptivity.mesh_search import MeshSearch
@@ -140,7 +140,7 @@ def stated(
 
 def _tells_its_error(difference: MeshDifference) -> bool:
     """Whether bisecting a stated mesh tells its error; without contact a coarse one looks better than it is."""
-    return resolved(difference, of_fine=False) and bool(difference.pair[0].pressure.any())
+    return not why_unresolved(difference, of_fine=False) and bool(difference.pair[0].pressure.any())
 
 
 def _compared(

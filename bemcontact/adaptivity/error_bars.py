@@ -52,12 +52,9 @@ def error_bars(
     displacements depend on all places. Then the note says what the change alone would give.
     """
     bars = tuple(_bars(difference, singularities, of_fine))
-    note = "" if searched else _unresolved(difference, of_fine=of_fine)
-    return (
-        tuple(replace(item, bar=None, note=item.note or _with_change(note, item.bar)) for item in bars)
-        if note
-        else bars
-    )
+    if searched or not (note := why_unresolved(difference, of_fine=of_fine)):
+        return bars
+    return tuple(replace(item, bar=None, note=item.note or _with_change(note, item.bar)) for item in bars)
 
 
 def _with_change(note: str, bar: float | None) -> str:
@@ -65,12 +62,7 @@ def _with_change(note: str, bar: float | None) -> str:
     return f"{note}; by the change when every element is bisected it is about {100 * bar:.2g} %" if bar else note
 
 
-def resolved(difference: MeshDifference, *, of_fine: bool) -> bool:
-    """Whether bisecting elements tells the error of the fine mesh, or of the coarse one."""
-    return not _unresolved(difference, of_fine=of_fine)
-
-
-def _unresolved(difference: MeshDifference, *, of_fine: bool) -> str:
+def why_unresolved(difference: MeshDifference, *, of_fine: bool) -> str:
     """Why bisecting elements does not tell the error of the fine mesh, or of the coarse one; empty if it does."""
     one, two = difference.pair
     reported = two if of_fine else one
@@ -99,7 +91,7 @@ def _bars(difference: MeshDifference, singularities: Sequence[Singularity], of_f
         if m is None:
             solved, answer = estimate.reported
             force = solved.force(answer, number)
-            note = "" if force > 0 else "no contact in this zone"  # on the other mesh alone, it is `_unresolved`
+            note = "" if force > 0 else "no contact in this zone"  # on the other mesh alone, see `why_unresolved`
             yield ErrorBar(quantity="force", zone=name, value=force, bar=None, note=note)
             continue
         hidden = hidden_change(difference, number)
@@ -108,7 +100,9 @@ def _bars(difference: MeshDifference, singularities: Sequence[Singularity], of_f
         yield from _zone_bars(estimate, number, name, m, hidden, its)
     changes.append(hidden_displacement(difference))
     sizes = [answer.largest_displacement for answer in difference.pair]
-    if max(sizes) <= NOTHING * _strain(estimate) * difference.fine.mesh.size:  # a body that is pressed and cannot move
+    softest = min(part.material.young_modulus for part in difference.fine.body.problem.parts)
+    strain = float(estimate.reported[1].pressure.max(initial=0.0)) / softest
+    if max(sizes) <= NOTHING * strain * difference.fine.mesh.size:  # a body that is pressed and cannot move
         yield ErrorBar(quantity="displacement", zone=None, value=0.0, bar=0.0)
         return
     bar = estimate.bar(max(_change(*sizes), *changes))
@@ -138,13 +132,6 @@ class _Estimate:
         """Mesh and answer that are reported."""
         one, two = self.difference.pair
         return (self.difference.fine, two) if self.of_fine else (self.difference.coarse, one)
-
-
-def _strain(estimate: _Estimate) -> float:
-    """Largest pressure over Young's modulus."""
-    solved, answer = estimate.reported
-    softest = min(part.material.young_modulus for part in solved.body.problem.parts)
-    return float(answer.pressure.max(initial=0.0)) / softest
 
 
 def _farthest(solved: Solved, answer: CaseAnswer) -> tuple[float, float] | None:

@@ -38,11 +38,11 @@ class FacingStretch:
 
     def sizes_of_first(self, limits: Sequence[Limit]) -> list[Limit]:
         """Limits on the first loop opposite to those (low, high, size) on the second one."""
-        last, first = self.opposite_ends[0], self.opposite_ends[1]
-        found = []
+        (last, first), found = self.opposite_ends, list[Limit]()
         for low, high, size in limits:
             if low <= last and high >= first:
-                begin, end = self._first(np.array([min(high, last), max(low, first)])).tolist()
+                onto = [min(high, last), max(low, first)]
+                begin, end = np.interp(onto, self.opposite[::-1], self.places[::-1]).tolist()
                 found.append(Limit(low=begin, high=end, size=size))
         return found
 
@@ -59,10 +59,6 @@ class FacingStretch:
             if high > low
         ]
 
-    def _first(self, positions: Array) -> Array:
-        """Positions on the first loop opposite to those on the second one."""
-        return np.interp(positions, self.opposite[::-1], self.places[::-1])
-
 
 def ends_of_parts(problem: Problem, loops: Sequence[Loop]) -> Iterator[tuple[int, list[float]]]:
     """Number of the loop and positions on it where a part ends that is opposite to another body, elastic or rigid."""
@@ -70,7 +66,7 @@ def ends_of_parts(problem: Problem, loops: Sequence[Loop]) -> Iterator[tuple[int
         for part in problem.opposite(contact):
             for number, loop in enumerate(loops):
                 if part.edge in loop.start_of:
-                    length = next(edge.length for edge in loop.edges if edge.name == part.edge)
+                    length = problem.edge(part.edge).length
                     yield number, [loop.start_of[part.edge] + at * length for at in (part.low, part.high)]
 
 

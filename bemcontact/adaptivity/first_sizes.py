@@ -117,6 +117,10 @@ class SizedOutline:
         joints = np.cumsum([len(own) for own in self.positions])[:-1]
         return tuple(np.split(np.concatenate(least), joints)), tuple(np.split(both, joints))
 
+    def start_of(self, edge: str) -> tuple[int, float]:
+        """Number of the loop that an edge of this name belongs to, and position of its start there [L]."""
+        return next((i, loop.start_of[edge]) for i, loop in enumerate(self.loops) if edge in loop.start_of)
+
     def thickness_at(self, loop: int, position: float) -> float:
         """Thickness [L] at a position of a loop."""
         away = np.abs(self.positions[loop] - position % self.loops[loop].length)

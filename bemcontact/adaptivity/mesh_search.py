@@ -152,10 +152,8 @@ class MeshSearch(MeshSizes):
 
     def _start(self, run: ZoneRun) -> tuple[int, float]:
         """Loop of a run, and position of its start there."""
-        for number, loop in enumerate(self.outline.loops):
-            if run.edges[0].name in loop.start_of:
-                return number, loop.start_of[run.edges[0].name] + run.breakpoints[0][0] * run.edges[0].length
-        raise AssertionError(run.edges[0].name)
+        number, start = self.outline.start_of(run.edges[0].name)
+        return number, start + run.breakpoints[0][0] * run.edges[0].length
 
     def _same(self, end: ContactEnd, other: ContactEnd, near: float) -> bool:
         """Whether two ends of contact are of one kind and nearer than a length."""
@@ -190,17 +188,10 @@ class MeshSearch(MeshSizes):
     def _between(self, answer: Solved) -> Iterator[tuple[int, Limit]]:
         """Limits for open elements through which a surface passes between the nodes."""
         for case in answer.answers:
-            for element, _ in penetrations(answer, case):
-                name = answer.mesh.edge_names[answer.mesh.edge[element]]
-                for number, loop in enumerate(self.outline.loops):
-                    if name in loop.start_of:
-                        low, high = _stretch(answer, element)
-                        start, length = loop.start_of[name], answer.body.problem.edge(name).length
-                        size = SPOT * (high - low) * length
-                        yield number, Limit(low=start + low * length, high=start + high * length, size=size)
+            yield from (self._limit(answer, element, SPOT) for element, _ in penetrations(answer, case))
 
-    def refine(self, differences: Sequence[MeshDifference], singular: Sequence[Sequence[Singularity]]) -> bool:
-        """Limit the size of elements where bisecting them changes most; whether the mesh will grow."""
+    def refine(self, differences: Sequence[MeshDifference], singular: Sequence[Sequence[Singularity]]) -> None:
+        """Limit the size of elements where bisecting them changes most."""
         coarse, asked = differences[0].coarse, self.problem.asked_accuracy
         assert asked is not None
         wanted = np.zeros(len(coarse.mesh.elements), bool)
@@ -214,11 +205,11 @@ class MeshSearch(MeshSizes):
                 tips = np.append(tips, np.flatnonzero(errors > errors.sum() / MOST_TIPS))
             wanted[tips], factor[tips] = True, TIP
         for element in np.flatnonzero(wanted):
-            self._limit(coarse, int(element), float(factor[element]))
+            number, limit = self._limit(coarse, int(element), float(factor[element]))
+            self.sources[number].append(limit)
         self.sources = [useful_limits(*pair) for pair in zip(self.outline.loops, self.sources, strict=True)]
         self.layers = [(end, max(n, min(MOST_LAYERS * n, self._layers_asked()))) for end, n in self.layers]
         self.growth *= SLOWER
-        return bool(wanted.any())
 
     def _layers_asked(self) -> float:
         """Layers with which the distance of nodes at an end of contact allows half of the accuracy asked.
@@ -250,16 +241,12 @@ class MeshSearch(MeshSizes):
             change[elements] = 0.0
         return change
 
-    def _limit(self, answer: Solved, element: int, factor: float) -> None:
-        """Limit the size where an element is."""
+    def _limit(self, answer: Solved, element: int, factor: float) -> tuple[int, Limit]:
+        """Loop of an element, and the limit there that makes its size smaller by a factor."""
         name = answer.mesh.edge_names[answer.mesh.edge[element]]
-        low, high = _stretch(answer, element)
-        length = answer.body.problem.edge(name).length
-        for number, loop in enumerate(self.outline.loops):
-            if name in loop.start_of:
-                start = loop.start_of[name]
-                size = factor * (high - low) * length
-                self.sources[number].append(Limit(low=start + low * length, high=start + high * length, size=size))
+        low, _, high = answer.mesh.fractions[element].tolist()
+        (number, start), length = self.outline.start_of(name), answer.body.problem.edge(name).length
+        return number, Limit(low=start + low * length, high=start + high * length, size=factor * (high - low) * length)
 
     def _beside_ends(self, answer: Solved) -> list[IntArray]:
         """Elements whose change of pressure belongs to each end of contact."""
@@ -289,12 +276,6 @@ def _tips(difference: MeshDifference, singular: Sequence[Singularity]) -> IntArr
 def _around(away: Array, length: float) -> Array:
     away = np.mod(np.abs(away), length)
     return np.minimum(away, length - away)
-
-
-def _stretch(answer: Solved, element: int) -> tuple[float, float]:
-    """Fractions of its edge where an element begins and ends."""
-    low, _, high = answer.mesh.fractions[element].tolist()
-    return low, high
 
 
 def _middles(answer: Solved, outline: SizedOutline) -> tuple[Array, Array]:

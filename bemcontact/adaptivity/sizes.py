@@ -97,10 +97,6 @@ class Loop:
         """Position of the start of each edge by its name."""
         return dict(zip((edge.name for edge in self.edges), self.joints.tolist(), strict=False))
 
-    def size_at(self, positions: Array, limits: Array, layers: Sequence[Layers]) -> Array:
-        """Element size (k,) at positions (k,): the least that any limit, a row of (l, 3), and the layers allow."""
-        return SizeField(loop=self, limits=limits, layers=layers).at(positions)
-
     def forwards(self, positions: Array, starts: Array) -> Array:
         """Distances (k, l) [L] forwards along the loop from starts (l,) to positions (k,), modulo its length."""
         return np.mod(positions[:, None] - starts, self.length)
@@ -157,7 +153,7 @@ class Loop:
 
         Parameters
         ----------
-        limits, layers : of the element size h, see `size_at`
+        limits, layers : of the element size h, see `SizeField`
         marks : positions [L] at which elements end besides the joints
         """
         inside = np.mod([*marks], self.length)

@@ -92,17 +92,6 @@ class ZoneRun:
         beside = [(self.ends[:-1] <= at + same) & (self.ends[1:] >= at - same) for at in places]
         return float(np.diff(self.ends)[np.any(beside, axis=0)].max(initial=0.0))
 
-    def fractions(self, ends: Array) -> dict[str, tuple[float, ...]]:
-        """Fractions of the length of each edge where elements end inside it, from the positions of all ends."""
-        stated, same = dict[str, set[float]](), SAME * self.length
-        for i, (edge, start, end) in enumerate(zip(self.edges, self.joints[:-1], self.joints[1:], strict=True)):
-            first, last = self.breakpoints[i][[0, -1]].tolist()
-            inside = ends[(ends > start + same) & (ends < end - same)]
-            places = first + (inside - start) / (end - start) * (last - first)
-            own = stated.setdefault(edge.name, set())
-            own.update(places.tolist(), (at for at in (first, last) if 0 < at < 1))
-        return {name: tuple(sorted(own)) for name, own in stated.items()}
-
 
 def zone_runs(body: Body) -> Iterator[ZoneRun]:
     """List the unbroken pieces of all contact zones of a body on its mesh, by their numbers."""

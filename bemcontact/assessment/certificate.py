@@ -273,7 +273,8 @@ def _certificate_sentence(
     sure = "equilibrium alone fixes the pressure"
     if eigenvalue is not None:
         sure = f"the smallest eigenvalue of the compliance is {eigenvalue:.2e}"
-    error = "" if relative is None else f" {_bound_sentence(relative, definite)}"
+    exact = f"{'the' if definite else 'any'} exact solution of the equations on this mesh"
+    error = "" if relative is None else f" No pressure is off by more than {relative:.1e} of the peak from {exact}."
     match kind:
         case CertificateKind.UNIQUE:
             why = _why_unique(eigenvalue, definite)
@@ -296,12 +297,6 @@ def _certificate_sentence(
             return f"This is not the contact state: {violation}.{error} {advice(solution)}"
 
 
-def _bound_sentence(relative: float, definite: bool) -> str:
-    """Say how far each pressure can be off."""
-    solution = "the exact solution" if definite else "any exact solution"
-    return f"No pressure is off by more than {relative:.1e} of the peak from {solution} of the equations on this mesh."
-
-
 def advice(solution: ContactSolution) -> str:
     """Say in a sentence what to try where a solution is not the contact state, with options of the command line."""
     match solution.status:
@@ -310,7 +305,8 @@ def advice(solution: ContactSolution) -> str:
         case Status.UNBOUNDED:
             return "Take the tributary weights."
         case Status.ITERATION_LIMIT:
-            return f"Raise the limit (--max-iterations; {solution.iterations} were done){_or_another(solution)}."
+            another = ", or take another start (--seed 1)" * (solution.formulation in LOCAL)
+            return f"Raise the limit (--max-iterations; {solution.iterations} were done){another}."
         case _ if solution.formulation == FormulationName.COMPLEMENTARITY:
             return "Refine the mesh (--refine 2), and look in it for very short elements."
         case Status.LOCAL_MINIMUM:
@@ -319,8 +315,3 @@ def advice(solution: ContactSolution) -> str:
             return f"Try {DIRECT}, and look in the mesh for very short elements."
         case _:
             return f"Try {DIRECT}, a finer mesh (--refine 2), or the tributary weights if these are others."
-
-
-def _or_another(solution: ContactSolution) -> str:
-    """Another remedy for a search that is too long."""
-    return ", or take another start (--seed 1)" if solution.formulation in LOCAL else ""

@@ -11,7 +11,7 @@ import numpy as np
 
 from bemcontact.assessment.certificate import NOT_SOLVED, Certificate
 from bemcontact.assessment.contender import (
-    OUTCOMES,
+    OF_DIRECT,
     Attempt,
     Contender,
     ContenderRecord,
@@ -127,7 +127,7 @@ class Comparison(Recorded, Tabular):
     @property
     def agreement(self) -> float | None:
         """Largest difference from the reference of contenders that meet all conditions; None if there is none."""
-        meeting = [item.label for item in self.contenders if OUTCOMES[item.verdict.outcome].meets_conditions]
+        meeting = [item.label for item in self.contenders if item.verdict.outcome.meets_conditions]
         return max((item.largest for name in meeting if (item := self.difference(name))), default=None)
 
     @property
@@ -206,7 +206,7 @@ def _differences(
     contact: CondensedContact, direct: Contender, contenders: Sequence[Contender]
 ) -> tuple[Difference, ...]:
     """Differences of all pairs, those with the reference first."""
-    solved = [direct] if OUTCOMES[direct.verdict.outcome].meets_conditions else []
+    solved = [direct] if direct.verdict.outcome.meets_conditions else []
     solutions = {item.label: item.solution for item in [*contenders, *solved] if item.solution is not None}
     basis = next(reversed(solutions.values())).pressure if solutions else np.zeros(contact.size)
     peak = contact.peak(basis) or contact.scales.pressure
@@ -240,13 +240,13 @@ def _difference(
 
 def _verdict(direct: Contender, contenders: Sequence[Contender], differences: Sequence[Difference]) -> str:
     """The result of a comparison as a whole, in sentences."""
-    solving = [item for item in contenders if OUTCOMES[item.verdict.outcome].solves]
+    solving = [item for item in contenders if item.verdict.outcome.solves]
     labels = {item.label for item in [*solving, direct]}
     apart = max((item.largest for item in differences if {item.one, item.other} <= labels), default=0.0)
     outcome, sentences = direct.verdict.outcome, []
-    if not OUTCOMES[outcome].meets_conditions:
+    if not outcome.meets_conditions:
         did = f", but {_listed(solving, len(contenders))} did" if solving else ""
-        sentences.append(f"{OUTCOMES[outcome].of_direct}{did}")
+        sentences.append(f"{OF_DIRECT[outcome]}{did}")
     elif solving and (apart <= SAME or outcome is not Outcome.SOLVES_PERHAPS_NOT_ALONE):
         agree = "agrees" if len(solving) == 1 else "agree"
         difference = "round-off" if apart <= ROUND_OFF else f"{apart:.1e} of the largest pressure"
@@ -259,8 +259,8 @@ def _verdict(direct: Contender, contenders: Sequence[Contender], differences: Se
     for failure in (Outcome.NOT_THE_SOLUTION, Outcome.LEFT_OPEN, Outcome.REFUSED):
         if failing := [item for item in contenders if item.verdict.outcome is failure]:
             sentences.append(f"{failure}: {_listed(failing, 0)}")
-    if OUTCOMES[outcome].meets_conditions:
-        sentences.append(OUTCOMES[outcome].of_direct)
+    if outcome.meets_conditions:
+        sentences.append(OF_DIRECT[outcome])
     return f"{'; '.join(sentences)}."
 
 

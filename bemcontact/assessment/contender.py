@@ -29,60 +29,38 @@ class Outcome(StrEnum):
     NOT_THE_SOLUTION = "not the solution"
     REFUSED = "refused"
 
+    @property
+    def quality(self) -> str:
+        """How good it is: good, fair or bad."""
+        return "good" if self is Outcome.SOLVES else "fair" if self.meets_conditions else "bad"
 
-@dataclass(frozen=True, kw_only=True)
-class OutcomeFacts:
-    """Meaning of an outcome, and its sentences."""
+    @property
+    def solves(self) -> bool:
+        """Whether the answer is a contact state."""
+        return self in (Outcome.SOLVES, Outcome.SOLVES_PERHAPS_NOT_ALONE)
 
-    quality: str
-    """How good it is: good, fair or bad."""
-    solves: bool
-    """Whether the answer is a contact state."""
-    meets_conditions: bool
-    """Whether the answer meets all conditions to their tolerance."""
-    predicate: tuple[str, str]
-    """What is said of one formulation, and of several."""
-    of_direct: str
-    """What is said of the direct solution."""
+    @property
+    def meets_conditions(self) -> bool:
+        """Whether the answer meets all conditions to their tolerance."""
+        return self.solves or self is Outcome.LEFT_OPEN
 
 
-OUTCOMES = {
-    Outcome.SOLVES: OutcomeFacts(
-        quality="good",
-        solves=True,
-        meets_conditions=True,
-        predicate=("finds the contact state", "find the contact state"),
-        of_direct="the direct solution is proved to be the only one",
-    ),
-    Outcome.SOLVES_PERHAPS_NOT_ALONE: OutcomeFacts(
-        quality="fair",
-        solves=True,
-        meets_conditions=True,
-        predicate=("finds a contact state", "find a contact state"),
-        of_direct="the direct solution meets all conditions, but they may have other solutions",
-    ),
-    Outcome.LEFT_OPEN: OutcomeFacts(
-        quality="fair",
-        solves=False,
-        meets_conditions=True,
-        predicate=("is left open by round-off", "are left open by round-off"),
-        of_direct="round-off leaves open whether the direct solution is near the contact state",
-    ),
-    Outcome.NOT_THE_SOLUTION: OutcomeFacts(
-        quality="bad",
-        solves=False,
-        meets_conditions=False,
-        predicate=("does not find the contact state", "do not find the contact state"),
-        of_direct="the direct solver found no contact state",
-    ),
-    Outcome.REFUSED: OutcomeFacts(
-        quality="bad",
-        solves=False,
-        meets_conditions=False,
-        predicate=("is refused", "are refused"),
-        of_direct="the direct solver was refused",
-    ),
+PREDICATES = {
+    Outcome.SOLVES: ("finds the contact state", "find the contact state"),
+    Outcome.SOLVES_PERHAPS_NOT_ALONE: ("finds a contact state", "find a contact state"),
+    Outcome.LEFT_OPEN: ("is left open by round-off", "are left open by round-off"),
+    Outcome.NOT_THE_SOLUTION: ("does not find the contact state", "do not find the contact state"),
+    Outcome.REFUSED: ("is refused", "are refused"),
 }
+"""What is said of one formulation, and of several."""
+OF_DIRECT = {
+    Outcome.SOLVES: "the direct solution is proved to be the only one",
+    Outcome.SOLVES_PERHAPS_NOT_ALONE: "the direct solution meets all conditions, but they may have other solutions",
+    Outcome.LEFT_OPEN: "round-off leaves open whether the direct solution is near the contact state",
+    Outcome.NOT_THE_SOLUTION: "the direct solver found no contact state",
+    Outcome.REFUSED: "the direct solver was refused",
+}
+"""What is said of the direct solution."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,43 +75,36 @@ class Conclusion(Leaf):
     """Reason of a failure that lies in the weights, or empty."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Reached:
-    """Objective of a statement at an answer, and at the contact state if that is known; free of units."""
+def objective_in_words(here: float, at_contact_state: float | None, peak: float) -> str:
+    """Say that the objective of a statement is 0, or how far it is from that of the contact state, if this is known.
 
-    here: float
-    at_contact_state: float | None
-    peak: float
-
-    def __str__(self) -> str:
-        """Say that the objective is 0, or how far it is from that of the contact state."""
-        round_off = ZERO * max(1.0, self.peak) ** 2
-        if self.at_contact_state is None:
-            return f"objective {self.here:.2e}"
-        zero = abs(self.at_contact_state) <= round_off
-        if abs(self.here - self.at_contact_state) <= round_off:
-            return (
-                f"objective 0 reached ({self.here:.0e})" if zero else f"objective {self.here:.1e}, as that state has it"
-            )
-        side = "above" if self.here > self.at_contact_state else "below"
-        there = "0" if zero else f"{self.at_contact_state:.2e}"
-        apart = "" if zero else f"{abs(self.here - self.at_contact_state):.0e} "
-        return f"objective {self.here:.2e}, {apart}{side} the {there} of the contact state"
+    Objectives and the peak pressure are free of units.
+    """
+    round_off = ZERO * max(1.0, peak) ** 2
+    if at_contact_state is None:
+        return f"objective {here:.2e}"
+    zero = abs(at_contact_state) <= round_off
+    if abs(here - at_contact_state) <= round_off:
+        return f"objective 0 reached ({here:.0e})" if zero else f"objective {here:.1e}, as that state has it"
+    side = "above" if here > at_contact_state else "below"
+    there = "0" if zero else f"{at_contact_state:.2e}"
+    apart = "" if zero else f"{abs(here - at_contact_state):.0e} "
+    return f"objective {here:.2e}, {apart}{side} the {there} of the contact state"
 
 
 def conclusion(
     solution: ContactSolution,
     certificate: Certificate,
-    reached: Reached | None,
+    reached: str,
     matrices: WeightedCompliance | None,
     tributary: WeightedCompliance,
 ) -> Conclusion:
     """Assess what is shown of an answer.
 
-    `reached` is the objective of its own statement, None if it has none; `matrices` are those of its own weights,
-    likewise; `tributary` those of the tributary weights.
+    `reached` is the objective of its own statement in words, empty if it has none; `matrices` are those of its own
+    weights, None if it has none; `tributary` those of the tributary weights.
     """
-    objective = "" if reached is None else f"{reached}, "
+    objective = f"{reached}, " if reached else ""
     match certificate.kind:
         case CertificateKind.UNIQUE:
             return Conclusion(
@@ -161,18 +132,13 @@ def conclusion(
             )
 
 
-def refused(reason: str, matrices: WeightedCompliance, tributary: WeightedCompliance) -> Conclusion:
-    """The verdict on a formulation that refused the problem, with the effect of its weights on the matrices."""
-    return Conclusion(outcome=Outcome.REFUSED, words=f"{reason}.", reason=_of_weights(matrices, tributary))
-
-
-def _why_not(solution: ContactSolution, certificate: Certificate, reached: Reached | None) -> str:
+def _why_not(solution: ContactSolution, certificate: Certificate, reached: str) -> str:
     """The reason why an answer is not the contact state."""
     ended = {
         Status.SOLVED: "its solver's end is not the contact state",
         Status.LOCAL_MINIMUM: "stationary but not the solution",
     }.get(solution.status, solution.status.words)
-    objective = "" if reached is None else f": {reached}"
+    objective = f": {reached}" if reached else ""
     return f"{ended}{objective}; {certificate.violation}."
 
 
@@ -377,15 +343,16 @@ def contender(
     options, tributary = attempt.options, matrices[Weights.TRIBUTARY]
     own = matrices[options.weights] if options.uses("weights") else None
     if assessment is None:
-        refusal = refused(attempt.refusal, own or tributary, tributary)
+        reason = _of_weights(own or tributary, tributary)
+        refusal = Conclusion(outcome=Outcome.REFUSED, words=f"{attempt.refusal}.", reason=reason)
         return Contender(
             attempt=attempt, assessment=None, objective=None, verdict=refusal, convex=own.convex if own else None
         )
-    objective, reached = _own_objective(options, assessment), None
+    objective, reached = _own_objective(options, assessment), ""
     if objective is not None:
         known = direct is not None and direct.certificate.kind is not CertificateKind.NOT_A_SOLUTION
         at_contact_state = _own_objective(options, direct) if known and direct is not None else None
-        reached = Reached(here=objective, at_contact_state=at_contact_state, peak=assessment.peak)
+        reached = objective_in_words(objective, at_contact_state, assessment.peak)
     search = assessment.solution.search
     return Contender(
         attempt=attempt,

@@ -65,8 +65,7 @@ def path(
         with modules():
             from bemcontact.analysis.follow import follow
             from bemcontact.problems.key_path import parsed_path
-            from bemcontact.report.path_text import path_summary
-            from bemcontact.report.path_verdicts import path_verdicts
+            from bemcontact.report.path_text import path_summary, path_verdicts
             from bemcontact.report.verdicts import shortfall_of
 
         problem = source.problem(refine)

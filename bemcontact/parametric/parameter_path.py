@@ -1,11 +1,10 @@
 """A load path as a function of a parameter: the data of its table, file and figure."""
 
-import csv
-import io
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from os import PathLike
+from typing import Any
 
 import numpy as np
 from pydantic import computed_field
@@ -17,7 +16,7 @@ from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.record import UnitsRecord, units_record
 from bemcontact.parametric.path import LoadPath
-from bemcontact.serialization import Internal, Leaf, Pair, Pairs
+from bemcontact.serialization import Internal, Leaf, Pair, Pairs, csv_text
 from bemcontact.views import VIEWS, Tabular
 
 BETWEEN = (0.25, 0.5, 0.75)
@@ -278,29 +277,21 @@ class ParameterPath(Leaf, Tabular):
 
     def to_csv(self) -> str:
         """Write a line for each state; points and arc positions in a cell have blanks between them."""
-        stream = io.StringIO()
-        table, zones = csv.writer(stream, lineterminator="\n"), self.contact.zone_names
         parts = ("resultant x", "resultant y", "moment", "starts", "ends")
-        table.writerow(
-            [self.key, "breakpoint", "enter", "leave", "peak", "peak error", "peak x", "peak y"]
-            + [f"{zone} {part}" for zone in zones for part in parts]
-            + ["nodes in contact"]
-        )
-        for state in self.states:
-            peak = ["" if state.peak is None else state.peak, "" if state.peak_bar is None else state.peak_bar]
-            place = ["", ""] if state.at is None else self.contact.points[state.at].tolist()
-            row = [state.value, int(state.breakpoint), _cell(state.entered), _cell(state.left), *peak, *place]
-            for zone, force, moment in zip(zones, state.resultant, state.moments, strict=True):
-                row += [*force, moment, *map(_cell, state.ends(zone))]
-            table.writerow([*row, _cell(state.touching)])
-        return stream.getvalue()
+        of_zones = [f"{zone} {part}" for zone in self.contact.zone_names for part in parts]
+        head = (self.key, "breakpoint", "enter", "leave", "peak", "peak error", "peak x", "peak y")
+        return csv_text([*head, *of_zones, "nodes in contact"], map(self._line, self.states))
+
+    def _line(self, state: PathState) -> list[Any]:
+        """The line of a state in the table."""
+        place = (None, None) if state.at is None else self.contact.points[state.at].tolist()
+        row = [state.value, int(state.breakpoint), _cell(state.entered), _cell(state.left), state.peak, state.peak_bar]
+        row += place
+        for zone, force, moment in zip(self.contact.zone_names, state.resultant, state.moments, strict=True):
+            row += [*force, moment, *map(_cell, state.ends(zone))]
+        return [*row, _cell(state.touching)]
 
 
 def _cell(numbers: Sequence[float]) -> str:
     """Numbers in one cell."""
-    return " ".join(map(repr, map(_plain, numbers)))
-
-
-def _plain(number: float) -> float:
-    """An integer or a float of Python, whose text is plain."""
-    return int(number) if isinstance(number, int | np.integer) else float(number)
+    return " ".join(map(repr, numbers))

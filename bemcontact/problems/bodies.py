@@ -1,6 +1,6 @@
 """Several bodies: what a spec says of each, their copies, and the contacts between them."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Self
 
@@ -192,6 +192,11 @@ class Part:
 def qualified(body: str, edge: str) -> str:
     """Name of an edge of a body in a problem; the edges of an only body keep theirs."""
     return f"{body}{SEPARATOR}{edge}" if body else edge
+
+
+def body_in(side: Sequence[str]) -> str:
+    """Name of the body of one side of a contact."""
+    return side[0].partition(SEPARATOR)[0]
 
 
 def unknown_edge(name: str, edges: Collection[str]) -> str:

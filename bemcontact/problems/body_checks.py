@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bemcontact.errors import Issue, KeyPath
-from bemcontact.problems.bodies import SEPARATOR, BodySpec, qualified, unknown_edge
+from bemcontact.problems.bodies import SEPARATOR, BodySpec, body_in, qualified, unknown_edge
 from bemcontact.problems.body_surface import BodySurface
 from bemcontact.problems.conditions import Loads
 from bemcontact.problems.contact_zone import ContactZone, RigidTool
@@ -131,7 +131,7 @@ def contact_issues(problem: StatedBodies, tools: Mapping[str, RigidTool]) -> Ite
             elif edge in problem.edge_conditions:
                 message = f"edge '{edge}' has a condition and cannot touch; remove one of the two"
                 yield Issue(path=("contact_zones", name, "edges", i), message=message)
-    touched = {side[0].partition(SEPARATOR)[0] for contact in problem.contacts.values() for side in contact.between}
+    touched = {body_in(side) for contact in problem.contacts.values() for side in contact.between}
     for name in problem.bodies:
         if not problem.is_elastic(name) and name not in touched:
             message = f"no contact names the rigid body '{name}', so that nothing touches it; add one, or remove it"
@@ -184,7 +184,7 @@ def _bond_issues(problem: StatedBodies) -> Iterator[Issue]:
             continue
         yield from _pair_issues(problem, between, path)
         for number, side in enumerate(between):
-            body = side[0].partition(SEPARATOR)[0]
+            body = body_in(side)
             if not problem.is_elastic(body):
                 message = f"'{body}' is rigid; hold the edges of the other body by a condition instead"
                 yield Issue(path=(*path, number), message=message)
@@ -238,8 +238,8 @@ def _own_edges(problem: StatedBodies, body: str) -> list[str]:
 
 def _pair_issues(problem: StatedBodies, between: tuple[Sequence[str], Sequence[str]], path: KeyPath) -> Iterator[Issue]:
     """Issues of the two sides of a contact together."""
-    first, second = (side[0].partition(SEPARATOR)[0] for side in between)
-    if all(problem.bodies[problem.bodies[name].copy_of or name].rigid for name in (first, second)):
+    first, second = map(body_in, between)
+    if not any(map(problem.is_elastic, (first, second))):
         yield Issue(path=path, message=f"'{first}' and '{second}' are both rigid; one of them has to be elastic")
     if both := {*between[0]} & {*between[1]}:
         yield Issue(path=path, message=f"'{min(both)}' is on both sides; contact is between two of them")
@@ -269,8 +269,8 @@ def _tool_issues(problem: StatedBodies, tools: Mapping[str, RigidTool]) -> Itera
     for name, tool in tools.items():
         for zone in tool.zones:
             if zone in problem.contacts and all(
-                not problem.bodies[problem.bodies[body].copy_of or body].rigid
-                for body in (side[0].partition(SEPARATOR)[0] for side in problem.contacts[zone].between)
+                problem.is_elastic(body)
+                for body in map(body_in, problem.contacts[zone].between)
                 if body in problem.bodies
             ):
                 message = (

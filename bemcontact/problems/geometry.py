@@ -128,6 +128,10 @@ class _EdgeBase(SpecModel):
             raise invalid(f"{given}; leave places out, or give the number of elements of the edge too")
         return self
 
+    def has_coordinates(self) -> bool:
+        """Whether the ends are given by coordinates, not by angles."""
+        return getattr(self, "angles", None) is None
+
     @property
     def places(self) -> tuple[tuple[KeyPath, Place], ...]:
         """All places where elements must end, each with its key path."""
@@ -167,10 +171,6 @@ class Line(_EdgeBase):
     def own_ends(self) -> tuple[Point | None, Point | None]:
         """Both ends; None for an end that is left out."""
         return self.start, self.end
-
-    def has_coordinates(self) -> bool:
-        """Whether the ends are given by coordinates, not by angles."""
-        return True
 
     def curve(self, start: Point, end: Point) -> Curve:
         """The line between two points."""
@@ -245,10 +245,6 @@ class Arc(_EdgeBase):
         first, last = (_moved(self.center, self.radius, unit_vector(angle)) for angle in self.angles)
         return first, last
 
-    def has_coordinates(self) -> bool:
-        """Whether the ends are given by coordinates, not by angles."""
-        return self.angles is None
-
     def curve(self, start: Point, end: Point) -> Curve:
         """The arc by its angles, or between two points."""
         if self.radius is not None and self.angles is not None:
@@ -293,10 +289,6 @@ class EllipseArc(_EdgeBase):
             ends.append((self.center[0] + c * a * x - s * b * y, self.center[1] + s * a * x + c * b * y))
         return ends[0], ends[1]
 
-    def has_coordinates(self) -> bool:
-        """Whether the ends are given by coordinates, not by angles."""
-        return False
-
     def curve(self, start: Point, end: Point) -> Curve:
         """The elliptic arc; its ends follow from the angles."""
         first, last = map(radians, self.angles)
@@ -340,10 +332,6 @@ class SplineEdge(_EdgeBase):
     def own_ends(self) -> tuple[Point | None, Point | None]:
         """Both ends."""
         return self.points[0], self.points[-1]
-
-    def has_coordinates(self) -> bool:
-        """Whether the ends are given by coordinates, not by angles."""
-        return True
 
     def curve(self, start: Point, end: Point) -> Curve:
         """The curve through all points."""

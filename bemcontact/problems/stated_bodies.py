@@ -18,6 +18,7 @@ from bemcontact.problems.bodies import (
     BodySpec,
     Part,
     Sides,
+    body_in,
     named_loops,
     placed,
     qualified,
@@ -138,7 +139,7 @@ class StatedBodies(SpecModel, Drawn):
     def sides_of(self, contact: str) -> tuple[str, str]:
         """Names of the two bodies of a contact or a bond."""
         first, second = self.bonded[contact] if contact in self.bonded else self.contacts[contact].between
-        return _body_in(first), _body_in(second)
+        return body_in(first), body_in(second)
 
     def touching_bodies(self, zone: str) -> tuple[str, str]:
         """Names of the elastic body that has the edges of a zone, and of the one that it touches; '' for a surface."""
@@ -216,7 +217,7 @@ class StatedBodies(SpecModel, Drawn):
         """For each body that bonds join to others, directly or through others, the same one of these."""
         groups = dict[str, str]()
         for sides in self.bonded.values():
-            one, two = (groups.setdefault(body, body) for body in map(_body_in, sides))
+            one, two = (groups.setdefault(body, body) for body in map(body_in, sides))
             groups = {body: one if group == two else group for body, group in groups.items()}
         return groups
 
@@ -237,9 +238,9 @@ class StatedBodies(SpecModel, Drawn):
     def _zone_of(self, between: tuple[Sequence[str], Sequence[str]], gap: float) -> BodyZone:
         """A contact between two bodies as a zone on the surface of the second one."""
         first, second = between
-        if not self.is_elastic(_body_in(first)):
+        if not self.is_elastic(body_in(first)):
             first, second = second, first
-        body = _body_in(second)
+        body = body_in(second)
         elastic, loops = self.is_elastic(body), named_loops(self.boundary_of(body), body)
         held = {name for name in self._held_edges() if elastic} if second == (body,) else set[str]()
         touched = tuple(
@@ -249,13 +250,13 @@ class StatedBodies(SpecModel, Drawn):
             if (edge.name in second or second == (body,)) and edge.name not in held
         )
         surface = BodySurface(body=body, elastic=elastic, edges=touched, loops=loops, offset=gap)
-        edges, own_loops = tuple(first), named_loops(self.boundary_of(_body_in(first)), _body_in(first))
-        if first == (_body_in(first),):
+        edges, own_loops = tuple(first), named_loops(self.boundary_of(body_in(first)), body_in(first))
+        if first == (body_in(first),):
             lines = [edge for loop in own_loops for edge in loop]
             edges = tuple(name for name in edges_that_see(lines, surface) if name not in self._held_edges())
         if elastic:
             own = tuple(edge for edge in self.edges if edge.name in edges)
-            share = self._share_of_first(_body_in(first), body)
+            share = self._share_of_first(body_in(first), body)
             flat = [rests_on_flat(touched, own), rests_on_flat(own, touched)]
             share = float(flat[0]) if flat[0] != flat[1] else share
             surface = replace(surface, share=share, first=own, first_loops=own_loops)
@@ -275,7 +276,7 @@ class StatedBodies(SpecModel, Drawn):
         """Centers [L] of the elastic bodies that may spin and touch others: no pressure without friction spins them."""
         if not self.contacts:
             return {}
-        both = [[_body_in(side) for side in contact.between] for contact in self.contacts.values()]
+        both = [[body_in(side) for side in contact.between] for contact in self.contacts.values()]
         touching = dict.fromkeys(name for pair in both if all(map(self.is_elastic, pair)) for name in pair)
         centers = {name: self._spin_center(name) for name in touching}
         return {name: center for name, center in centers.items() if center is not None}
@@ -286,10 +287,10 @@ class StatedBodies(SpecModel, Drawn):
         Springs across a circle about this point hold no spin.
         """
         contacts, bonds = ([*pairs] for pairs in ((c.between for c in self.contacts.values()), self.bonded.values()))
-        sides = [side for pair in contacts for side in pair if _body_in(side) == body]
-        pairs = [{*map(_body_in, pair)} for pair in contacts]
+        sides = [side for pair in contacts for side in pair if body_in(side) == body]
+        pairs = [{*map(body_in, pair)} for pair in contacts]
         others = [self.boundary_of(other) for pair in pairs if body in pair for other in pair - {body}]
-        bonded = any(_body_in(side) == body for pair in bonds for side in pair)
+        bonded = any(body_in(side) == body for pair in bonds for side in pair)
         conditions = {qualified(body, name): condition for name, condition in self.bodies[body].conditions.items()}
         held = any(condition.displacement.given for condition in conditions.values())
         held |= any(
@@ -378,7 +379,7 @@ class StatedBodies(SpecModel, Drawn):
         if contact not in self.contacts:
             return np.inf
         first, second = self.contacts[contact].between
-        if SEPARATOR in (first if self.is_elastic(_body_in(first)) else second)[0] and not self._crowded(contact):
+        if SEPARATOR in (first if self.is_elastic(body_in(first)) else second)[0] and not self._crowded(contact):
             return np.inf
         originals = (self.bodies[body].copy_of or body for body in self.sides_of(contact))  # a box depends on the turn
         return REACH * min(self.boundary_of(body).size for body in originals)
@@ -452,8 +453,3 @@ class StatedBodies(SpecModel, Drawn):
             for name, body in self.bodies.items()
         }
         return self.model_copy(update={"bodies": bodies, **others})
-
-
-def _body_in(side: Sequence[str]) -> str:
-    """Name of the body of one side of a contact."""
-    return side[0].partition(SEPARATOR)[0]

@@ -71,6 +71,11 @@ def bars_of(record: JsonObject, quantity: str) -> Iterator[JsonObject]:
     return (bar for bar in record.get("accuracy", {}).get("bars", ()) if bar["quantity"] == quantity)
 
 
+def error_of(record: JsonObject, quantity: str, owner: str) -> float | None:
+    """Relative error of a quantity of a zone, a tool or a free motion; None if it is not known."""
+    return next((bar["bar"] for bar in bars_of(record, quantity) if owner in (bar["zone"], bar["mover"])), None)
+
+
 def infinite_peaks(record: JsonObject) -> dict[str, str]:
     """Zones whose peak pressure is infinite, with the reason."""
     return {bar["zone"]: bar["note"] for bar in bars_of(record, "peak") if bar["value"] is None}

@@ -1,7 +1,5 @@
 """The page of a designed gap, and its table: what was asked, what is reached, what is proved, the surface to use."""
 
-import csv
-import io
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -16,6 +14,7 @@ from bemcontact.report.contact_words import units_of
 from bemcontact.report.formatting import number, sentence_case, with_unit, zero_if_negligible
 from bemcontact.report.page import picture, template
 from bemcontact.report.verdicts import NOT_LOOKED_AT, Verdict, overall
+from bemcontact.serialization import csv_text
 from bemcontact.version import __version__
 
 CAPTIONS = {
@@ -178,13 +177,9 @@ def _surface(design: GapDesign) -> tuple[str, str]:
 
 def design_csv(design: GapDesign) -> str:
     """Write a line for each contact point of the zone: arc position, place, profile, and pressures by load state."""
-    stream, contact = io.StringIO(), design.before[0].contact
-    table = csv.writer(stream, lineterminator="\n")
-    states = range(1, len(design.before) + 1)
+    contact, states = design.before[0].contact, range(1, len(design.before) + 1)
     pressures = (f"pressure_{when}_{state}" for state in states for when in ("before", "after"))
-    table.writerow(["arc", "x", "y", "profile", *pressures])
-    columns = [state.pressure for pair in zip(design.before, design.after, strict=True) for state in pair]
-    for i in contact.in_order(np.flatnonzero(contact.zone == contact.zone[design.points[0]])).tolist():
-        place = [float(contact.arc_position[i]), *contact.points[i].tolist(), float(design.profile[i])]
-        table.writerow([*place, *(float(pressure[i]) for pressure in columns)])
-    return stream.getvalue()
+    pairs = zip(design.before, design.after, strict=True)
+    columns = [contact.arc_position, *contact.points.T, design.profile, *(it.pressure for pair in pairs for it in pair)]
+    at = contact.in_order(np.flatnonzero(contact.zone == contact.zone[design.points[0]]))
+    return csv_text(["arc", "x", "y", "profile", *pressures], np.stack(columns, axis=1)[at].tolist())

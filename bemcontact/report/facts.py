@@ -15,6 +15,7 @@ from bemcontact.report.bars import (
     JsonObject,
     bars_of,
     error_alone,
+    error_of,
     error_percent,
     infinite_peaks,
     unit_of_bar,
@@ -30,6 +31,7 @@ from bemcontact.report.formatting import (
     zero_if_negligible,
 )
 from bemcontact.report.peak_places import LEVEL, equal_peaks, level_zones
+from bemcontact.studies.outputs import TURNS, turns_a_body
 
 RESIDUALS = ("penetration", "tension", "complementarity", "equilibrium", "force_balance")
 """Residuals that are listed."""
@@ -43,8 +45,6 @@ UNRESOLVED = 1e-3
 """Share of the length of contact below which no place in it is resolved."""
 MOST_FIGURES = 10
 """Figures of the ends of a contact far from the origin; five tell all others apart."""
-TURNS, NEARLY = "rotation ", "nearly a translation"
-"""Words in the name of a free rotation, and in that of one whose center is far away."""
 NOT_KNOWN = "not known; only slopes and levers as drawn hold it, which move with the body"
 """Words for the angle of a body that turns on and on."""
 UNKNOWN_AMOUNT = "an amount that is not known"
@@ -87,8 +87,8 @@ def _peaks(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
         for zone in dict.fromkeys(interval["zone"] for interval in record["intervals"]):
             largest = max(p for p, of in zip(record["pressure"], record["zone"], strict=True) if of == zone)
             if largest < (1 - max(peak_bar(record) or 0.0, LEVEL)) * peak["pressure"]:  # else it is named above
-                known = next((bar["bar"] for bar in bars_of(record, "peak") if bar["zone"] == zone), None)
-                yield "Peak pressure", f"of {zone}: {with_unit(with_bar(largest, known), units.stress)}"
+                value = with_unit(with_bar(largest, error_of(record, "peak", zone)), units.stress)
+                yield "Peak pressure", f"of {zone}: {value}"
     if infinite:
         for bar in bars_of(record, "peak"):
             yield "Peak pressure", f"of {bar['zone']}: {_peak_of_zone(bar, record, units)}"
@@ -114,21 +114,15 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
         if record["intervals"] and zone not in [interval["zone"] for interval in record["intervals"]]:
             yield "Contact", f"{zone}: nowhere"
     yield from _peaks(record, units)
-    for bar in bars_of(record, "intensity"):
-        if bar["value"] is not None:
-            value = with_unit(with_bar(bar["value"], bar["bar"]), unit_of_bar(bar, units))
-            place = vector(bar["at"], units.length, scale=size)
-            yield "Intensity", f"of {bar['zone']}: K = {value} in {bar['note']} at {place}"
+    yield from (("Intensity", f"of {zone}: {words}") for zone, words in intensities(record, units))
     for bar in bars_of(record, "displacement"):
         place = bar["at"] and f", at {vector(bar['at'], units.length, scale=size)}"
         largest = f"{largest_displacement(bar, units)} at most{place or ''}"
         yield "Displacement", bar["note"] if bar["value"] is None else largest
     forces, sides = zone_forces(record, units), record["sides"]
     if not sides:
-        force, error = _force(record["resultant"], record, None, units), size * sum(force_errors(record) or (0.0,))
-        moment = zero_if_negligible(record["resultant_moment"], pressed * size)
-        known = error / abs(moment) if moment and error else None
-        moment = with_unit(without_digits_beyond(moment, known), units.line_moment)
+        force, error = _force(record["resultant"], record, None, units), sum(force_errors(record)) or None
+        moment = moment_in_words(record["resultant_moment"], error, record, units)
         yield "Resultant", f"{force}, of the rigid surfaces on the body; moment {moment} about (0, 0)"
     for zone, written in forces.items() if len(forces) > 1 or sides else ():
         yield "Resultant", f"of {zone}{f' on {sides[zone][0]}' if sides else ''}: {written}"
@@ -140,6 +134,23 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
     yield "Residuals", ", ".join(written)
 
 
+def intensities(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
+    """Zone of each infinite pressure whose intensity K is known, and K with its law and place."""
+    for bar in bars_of(record, "intensity"):
+        if bar["value"] is not None:
+            value = with_unit(with_bar(bar["value"], bar["bar"]), unit_of_bar(bar, units))
+            place = vector(bar["at"], units.length, scale=coordinate_size(record))
+            yield bar["zone"], f"K = {value} in {bar['note']} at {place}"
+
+
+def moment_in_words(moment: float, error: float | None, record: JsonObject, units: Units) -> str:
+    """Write a moment with the digits that an error of the force leaves, whose lever may be the largest coordinate."""
+    size = coordinate_size(record)
+    moment = zero_if_negligible(moment, pressed_by(record) * size)
+    known = size * error / abs(moment) if moment and error is not None else None
+    return with_unit(without_digits_beyond(moment, known), units.line_moment)
+
+
 def largest_displacement(bar: JsonObject, units: Units) -> str:
     """Write the largest displacement from its error bar, or that it is not known."""
     return "not known" if bar["value"] is None else with_unit(with_bar(bar["value"], bar["bar"]), units.length)
@@ -148,7 +159,7 @@ def largest_displacement(bar: JsonObject, units: Units) -> str:
 def rotations(record: JsonObject) -> Iterator[tuple[str, str]]:
     """Name and angle of each free rotation of a body."""
     for j, name in enumerate(record["motion_names"]):
-        if name.startswith(TURNS) and " of the tool " not in name and NEARLY not in name:
+        if turns_a_body(name):
             yield "Rotation", f"{_in_sense(name, record, j).removeprefix(TURNS)}{_angle(record, j)}"
 
 
@@ -224,7 +235,7 @@ def _angle(record: JsonObject, motion: int) -> str:
     if _stays(record, motion):
         return ": 0"
     angle = abs(record["rotations"][motion])
-    return f": {with_unit(with_bar(angle, _bar_of_motion(record, 'rotation', name)), 'rad')}"
+    return f": {with_unit(with_bar(angle, error_of(record, 'rotation', name)), 'rad')}"
 
 
 def _stays(record: JsonObject, motion: int) -> bool:
@@ -241,11 +252,6 @@ def _least_angle(record: JsonObject) -> float:
     return angle_of_round_off(np.array(record["nodes"]), np.array(record["normals"]), pressed) if pressed.any() else 0.0
 
 
-def _bar_of_motion(record: JsonObject, quantity: str, mover: str) -> float | None:
-    """Error bar of a motion or a rotation; None if it is not known."""
-    return next((bar["bar"] for bar in bars_of(record, quantity) if bar["mover"] == mover), None)
-
-
 def _in_sense(name: str, record: JsonObject, motion: int) -> str:
     """Name of a free motion, with the sense in which it turns; without one where the amount is not known."""
     angles = record["rotations"]
@@ -260,21 +266,19 @@ def _tool(record: JsonObject, tool: JsonObject, size: float, pressed: float, mov
     """Displacement of a tool, and the force and moment of the body on it."""
     moved, turned = UNKNOWN_AMOUNT, UNKNOWN_AMOUNT
     if tool["displacement"] is not None:
-        bar = _bar_of_motion(record, "motion", tool["name"])
+        bar = error_of(record, "motion", tool["name"])
         error = None if bar is None else bar * float(np.hypot(*tool["displacement"]))
         moved = vector_with_error(tool["displacement"], error, units.length, moves)
     if tool["rotation"] is not None:
         turn = zero_if_negligible(tool["rotation"] * size, moves) / (size or 1.0)
         turn = turn if not tool["free"][2] or abs(turn) > _least_angle(record) else 0.0
-        turned = with_unit(with_bar(turn, _bar_of_motion(record, "rotation", tool["name"])), "rad")
+        turned = with_unit(with_bar(turn, error_of(record, "rotation", tool["name"])), "rad")
     components = zip(tool["force_of_body"], tool["free"][:2], strict=True)
     is_load = all(free or not zero_if_negligible(component, pressed) for component, free in components)
     errors = [force_errors(record, zone) for zone in tool["zones"]]
     error = None if is_load or [] in errors else sum(map(sum, errors))
     force = vector_with_error(tool["force_of_body"], error or None, units.line_force, pressed)
-    moment = zero_if_negligible(tool["moment_of_body"], pressed * size)
-    known = size * error / abs(moment) if moment and error and not tool["free"][2] else None
-    moment = with_unit(without_digits_beyond(moment, known), units.line_moment)
+    moment = moment_in_words(tool["moment_of_body"], None if tool["free"][2] else error or None, record, units)
     about = vector(tool["point"])
     return (
         f"{tool['name']}: moves by {moved}, turns by {turned}; the body presses on it with {force}, moment {moment} "

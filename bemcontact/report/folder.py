@@ -1,8 +1,7 @@
 """Folders of results, paths, designs, studies and reproductions; a folder is written completely or not at all."""
 
 import shutil
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from bemcontact.adaptivity.mesh_sizes import first_mesh
@@ -41,10 +40,9 @@ def save(study: MeshStudy, folder: Path, spec: str | None = None) -> None:
     ensure_folder_writable(folder)
     pictures = figures.vector_graphics(figures.figures_of(study))
     text = page.render(study.to_dict(), pictures, spec)
-    with _written(folder, REPORT, text, study.to_json(), pictures) as temporary:
-        study.finest.comparison.contact.save(temporary / "contact.npz")
-        if spec is not None:
-            (temporary / "spec.yaml").write_text(spec, encoding="utf-8", newline="\n")
+    contact = study.finest.comparison.contact
+    others = {"spec.yaml": spec}
+    _write(folder, REPORT, text, study.to_json(), pictures, others, lambda into: contact.save(into / "contact.npz"))
 
 
 def save_result(
@@ -57,8 +55,7 @@ def save_result(
     ensure_folder_writable(folder, RESULT)
     pictures = figures.vector_graphics(figures.pictures_of(results, stress))
     text = result_page.render(results, pictures, spec, stress=stress)
-    with _written(folder, RESULT, text, results.to_json(), pictures) as temporary:
-        _write_tables(results, temporary, spec)
+    _write(folder, RESULT, text, results.to_json(), pictures, {**tables_of(results), "spec.yaml": spec})
 
 
 def save_cases(comparisons: CaseComparisons, folder: Path, spec: str | None = None) -> None:
@@ -67,15 +64,7 @@ def save_cases(comparisons: CaseComparisons, folder: Path, spec: str | None = No
     answers = comparisons.answers
     pictures = figures.vector_graphics(figures.pictures_of(answers))
     text = result_page.render(answers, pictures, spec, comparisons)
-    with _written(folder, REPORT, text, comparisons.to_json(), pictures) as temporary:
-        _write_tables(answers, temporary, spec)
-
-
-def _write_tables(results: Result | CaseResults, folder: Path, spec: str | None) -> None:
-    """Write the tables of results, and the spec if given."""
-    tables = tables_of(results) if spec is None else {**tables_of(results), "spec.yaml": spec}
-    for name, content in tables.items():
-        (folder / name).write_text(content, encoding="utf-8", newline="\n")
+    _write(folder, REPORT, text, comparisons.to_json(), pictures, {**tables_of(answers), "spec.yaml": spec})
 
 
 def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
@@ -83,8 +72,7 @@ def save_reproduction(reproduction: Reproduction, folder: Path) -> None:
     ensure_folder_writable(folder, REPRODUCTION)
     pictures = figures.vector_graphics(figures.figures_of_reproduction(reproduction))
     text = paper_page.render(reproduction.to_dict(), pictures)
-    with _written(folder, REPRODUCTION, text, reproduction.to_json(), pictures):
-        pass
+    _write(folder, REPRODUCTION, text, reproduction.to_json(), pictures)
 
 
 def save_path(
@@ -100,21 +88,15 @@ def save_path(
     called with the number of frames of the animation that are drawn, and that of all.
     """
     ensure_folder_writable(folder, PATH)
-    drawn = None if problem is None else Variation(_on_some_mesh(problem), path.key).at(path.end)
+    drawn = problem
+    if problem is not None:
+        drawn = Variation(first_mesh(problem) if problem.adapts else problem, path.key).at(path.end)
     pictures = figures.vector_graphics(figures.figures_of_path(path, drawn))
     if figures.can_be_animated(path):
         pictures["animation"] = figures.animated_graphic(figures.draw_animation(path, progress))
         pictures["states"] = figures.vector_graphic(figures.figure_of_states(figures.states_on(path)))
     text = path_page.render(path, pictures, problem, spec)
-    with _written(folder, PATH, text, path.to_json(), pictures) as temporary:
-        (temporary / "path.csv").write_text(path.to_csv(), encoding="utf-8", newline="\n")
-        if spec is not None:
-            (temporary / "spec.yaml").write_text(spec, encoding="utf-8", newline="\n")
-
-
-def _on_some_mesh(problem: Problem) -> Problem:
-    """The problem on its stated mesh, or on the first one of a search, to be drawn."""
-    return first_mesh(problem) if problem.adapts else problem
+    _write(folder, PATH, text, path.to_json(), pictures, {"path.csv": path.to_csv(), "spec.yaml": spec})
 
 
 def save_design(design: GapDesign, folder: Path, relief: Relief | None = None) -> None:
@@ -122,8 +104,7 @@ def save_design(design: GapDesign, folder: Path, relief: Relief | None = None) -
     ensure_folder_writable(folder, DESIGN)
     pictures = figures.vector_graphics(figures.figures_of_design(design))
     text = design_page.render(design, pictures, relief)
-    with _written(folder, DESIGN, text, design.to_json(), pictures) as temporary:
-        (temporary / "design.csv").write_text(design_page.design_csv(design), encoding="utf-8", newline="\n")
+    _write(folder, DESIGN, text, design.to_json(), pictures, {"design.csv": design_page.design_csv(design)})
 
 
 def save_study(study: StudyTable, folder: Path, spec: str | None = None) -> None:
@@ -132,26 +113,34 @@ def save_study(study: StudyTable, folder: Path, spec: str | None = None) -> None
     pictures = figures.vector_graphics(figures.figures_of_study(study))
     text = study_page.render(study, pictures, spec)
     numbered = {f"{number:02d}": picture for number, picture in enumerate(pictures.values(), 1)}
-    with _written(folder, STUDY, text, study.to_json(), numbered) as temporary:
-        (temporary / "study.csv").write_text(study.to_csv(), encoding="utf-8", newline="\n")
+
+    def more(temporary: Path) -> None:
         study.save_parquet(temporary / "study.parquet")
-        if spec is not None:
-            (temporary / "spec.yaml").write_text(spec, encoding="utf-8", newline="\n")
         if (folder / JOURNAL).is_file():
             shutil.copyfile(folder / JOURNAL, temporary / JOURNAL)
 
+    _write(folder, STUDY, text, study.to_json(), numbered, {"study.csv": study.to_csv(), "spec.yaml": spec}, more)
 
-@contextmanager
-def _written(
-    folder: Path, contents: Contents, text: str, numbers: str, pictures: Mapping[str, bytes]
-) -> Iterator[Path]:
-    """Write page, numbers and pictures into a temporary folder; yield it for further files."""
+
+def _write(
+    folder: Path,
+    contents: Contents,
+    page: str,
+    numbers: str,
+    pictures: Mapping[str, bytes],
+    others: Mapping[str, str | None] | None = None,
+    more: Callable[[Path], object] | None = None,
+) -> None:
+    """Write page, numbers, pictures and other texts; `more` writes into the temporary folder what is no text."""
+    texts = {contents.page: page, contents.numbers: f"{numbers}\n", **(others or {})}
     with output.whole_folder(folder) as temporary:
         if pictures:
             (temporary / PICTURES).mkdir()
         for name, picture in pictures.items():
             (temporary / PICTURES / f"{name}.svg").write_bytes(picture)
-        (temporary / contents.numbers).write_text(f"{numbers}\n", encoding="utf-8", newline="\n")
-        (temporary / contents.page).write_text(text, encoding="utf-8", newline="\n")
-        yield temporary
+        for name, text in texts.items():
+            if text is not None:
+                (temporary / name).write_text(text, encoding="utf-8", newline="\n")
+        if more is not None:
+            more(temporary)
         ensure_folder_writable(folder, contents)

@@ -11,6 +11,8 @@ from bemcontact.studies.journal import JOURNAL, is_journal
 
 PICTURES = "figures"
 """Name of the folder of pictures."""
+OF_RESULTS = ("zones.csv", "intervals.csv", "points.csv", "stress.csv", "largest_stresses.csv", "spec.yaml")
+"""Tables and spec in folders of results."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,15 +33,7 @@ REPORT = Contents(
     title="report",
     page="report.html",
     numbers="report.json",
-    others=(
-        "contact.npz",
-        "zones.csv",
-        "intervals.csv",
-        "points.csv",
-        "stress.csv",
-        "largest_stresses.csv",
-        "spec.yaml",
-    ),
+    others=("contact.npz", *OF_RESULTS),
     picture=re.compile(
         r"(problem|contacts|(pressure|gap)(-\d+)?|deformed|difference|convergence|history-[a-z0-9-]+)\.svg"
     ),
@@ -50,7 +44,7 @@ RESULT = Contents(
     title="result",
     page="result.html",
     numbers="result.json",
-    others=("zones.csv", "intervals.csv", "points.csv", "stress.csv", "largest_stresses.csv", "spec.yaml"),
+    others=OF_RESULTS,
     picture=re.compile(r"(problem|contacts|deformed|(contact|pressure|gap)(-\d+)?)\.svg"),
     keys=frozenset({"name", "version", "certified"}),
 )

@@ -137,13 +137,6 @@ def volume_loads(problem: Problem, *, short: bool = False) -> Iterator[str]:
             yield from (f"{load}{of}{case}" for load in words if factor)
 
 
-def acting_volume_loads(problem: Problem) -> Iterator[tuple[float, Loads]]:
-    """The loads on the volume of each body with their factors: those of the problem and of the load cases that act."""
-    factors = [1.0, *(problem.factors().get(case, 0.0) for case in problem.load_cases)]
-    for factor, each in zip(factors, problem.volume_loads, strict=True):
-        yield from ((factor, loads) for loads in each if factor)
-
-
 def _acting(case: str, factor: float) -> str:
     """Name a load case with the factor by which it acts, if it is not one."""
     return case if factor == 1 else f"{factor:g} {case}"

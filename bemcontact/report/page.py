@@ -10,7 +10,7 @@ from urllib.parse import quote
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
-from bemcontact.assessment.contender import OUTCOMES, Outcome
+from bemcontact.assessment.contender import OF_DIRECT, PREDICATES, Outcome
 from bemcontact.errors import escaped_lines
 from bemcontact.problems import Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, infinite_peaks, with_bar
@@ -182,7 +182,7 @@ def _contents(report: JsonObject) -> dict[str, Any]:
 
 def _quality(outcome: str) -> str:
     """Quality of an outcome: good, fair or bad."""
-    return OUTCOMES[Outcome(outcome)].quality
+    return Outcome(outcome).quality
 
 
 def _headline(report: JsonObject, compared: JsonObject) -> str:
@@ -190,8 +190,8 @@ def _headline(report: JsonObject, compared: JsonObject) -> str:
     if len(compared["contenders"]) < MANY:
         return report["verdict"]
     outcomes = Counter(item["verdict"]["outcome"] for item in compared["contenders"])
-    counted = (f"{count} {OUTCOMES[Outcome(name)].predicate[count > 1]}" for name, count in outcomes.items())
-    direct = OUTCOMES[Outcome(compared["reference"]["verdict"]["outcome"])].of_direct
+    counted = (f"{count} {PREDICATES[Outcome(name)][count > 1]}" for name, count in outcomes.items())
+    direct = OF_DIRECT[Outcome(compared["reference"]["verdict"]["outcome"])]
     deepest = report["levels"][-1]["penetration"]
     first = "" if deepest is None else f"{deepest['words']} "
     return f"{first}Of {len(compared['contenders'])} settings {', '.join(counted)}. {sentence_case(direct)}."

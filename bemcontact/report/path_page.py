@@ -7,7 +7,6 @@ from bemcontact.analysis.result import BEYOND
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.problems import Problem, Units
 from bemcontact.report.bars import BARS_ARE, with_bar
-from bemcontact.report.breakpoints import breakpoint_words
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.formatting import (
     number,
@@ -19,7 +18,7 @@ from bemcontact.report.formatting import (
     zone_surfaces,
 )
 from bemcontact.report.page import Picture, picture, template
-from bemcontact.report.path_verdicts import path_verdicts
+from bemcontact.report.path_text import breakpoint_words, path_verdicts
 from bemcontact.report.verdicts import NOT_LOOKED_AT, overall
 from bemcontact.version import __version__
 

@@ -8,7 +8,6 @@ import numpy as np
 from bemcontact.analysis.case_comparisons import CaseComparisons
 from bemcontact.analysis.load_cases import CaseResults
 from bemcontact.analysis.result import BEYOND, Result
-from bemcontact.assessment.contender import OUTCOMES
 from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, SHEAR_BELOW, StressPeak
 from bemcontact.options import StressMeasure
 from bemcontact.problems import Problem, Units
@@ -265,7 +264,7 @@ def _formulations(comparisons: CaseComparisons) -> Iterator[dict[str, Any]]:
                 "label": contender.label,
                 "outcome": contender.verdict.outcome,
                 "words": "" if contender.certified else sentence_case(contender.verdict.words),
-                "quality": OUTCOMES[contender.verdict.outcome].quality,
+                "quality": contender.verdict.outcome.quality,
                 "difference": NOTHING if difference is None else small(difference.largest),
             }
 

@@ -13,7 +13,7 @@ from bemcontact.errors import escaped_lines
 from bemcontact.problems.units import Units
 from bemcontact.report.bars import NOTHING, error_percent, with_error
 from bemcontact.report.formatting import number, plural, seconds_in_words, sentence_case, with_unit
-from bemcontact.report.page import Picture, picture, template
+from bemcontact.report.page import picture, template
 from bemcontact.report.tables import add, list_of_facts, table_of
 from bemcontact.report.text import add_verdict
 from bemcontact.report.verdicts import Verdict
@@ -48,7 +48,9 @@ def study_verdicts(study: StudyTable) -> tuple[Verdict, Verdict]:
     total, rows = len(study.rows), study.rows
     bad = sum(not row.certified for row in rows)
     word = "all proved" if not bad else f"{bad} of {total} not proved"
-    words = "Each member has a unique solution that is proved." if not bad else _worst(rows, certified=False)
+    words = "Each member has a unique solution that is proved."
+    if bad:
+        words = _sentence(next(row for row in rows if not row.certified))
     equations = Verdict("Equations", "bad" if bad else "good", word, words)
     return equations, _mesh_verdict([row for row in rows if row.status is not MemberStatus.FAILED])
 
@@ -65,11 +67,6 @@ def _mesh_verdict(rows: list[MemberRow]) -> Verdict:
     worst = max((row.mesh_error or 0.0 for row in rows), default=0.0)
     word = f"error at most {error_percent(worst)}" if rows else "no member has a result"
     return Verdict("Mesh", "good" if rows else "bad", word, "Each member is as accurate as was asked." if rows else "")
-
-
-def _worst(rows: tuple[MemberRow, ...], *, certified: bool) -> str:
-    """Say of the first member that is not certified what is wrong."""
-    return _sentence(next(row for row in rows if row.certified is certified))
 
 
 def _left_out(study: StudyTable) -> str:
@@ -138,7 +135,10 @@ def render(study: StudyTable, pictures: Mapping[str, bytes], spec: str | None) -
         columns=[(name, unit_of_output(name, study.units)) for name in study.columns],
         rows=[*_cells(study, MOST_ROWS)],
         most=MOST_ROWS,
-        pictures=[_picture(name, svg) for name, svg in pictures.items()],
+        pictures=[
+            picture(svg, caption, f"{caption}, with error bars; members that do not hold are marked")
+            for caption, svg in pictures.items()
+        ],
         errors=ERRORS,
         spec=spec,
     )
@@ -170,11 +170,6 @@ def _cells(study: StudyTable, most: int) -> Iterator[dict[str, Any]]:
             ],
             "message": sentence_case(study.message(row)),
         }
-
-
-def _picture(caption: str, svg: bytes) -> Picture:
-    """A picture with its caption."""
-    return picture(svg, caption, f"{caption}, with error bars; members that do not hold are marked")
 
 
 def study_summary(study: StudyTable, seconds: float, place: str | None = None) -> RenderableType:

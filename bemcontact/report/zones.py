@@ -1,10 +1,8 @@
 """Tables of the contact zones of a result, or of all load cases: in words for pages, and as CSV."""
 
-import csv
-import io
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
-from itertools import chain
+from collections.abc import Callable, Iterator
+from itertools import chain, starmap
 from typing import Any
 
 import numpy as np
@@ -14,17 +12,20 @@ from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, SHEAR_BELOW
 from bemcontact.problems import Units
-from bemcontact.report.bars import NOTHING, JsonObject, bars_of, unit_of_bar, with_bar, without_digits_beyond
+from bemcontact.report.bars import NOTHING, JsonObject, error_of, infinite_peaks, with_bar, without_digits_beyond
 from bemcontact.report.facts import (
     contact_intervals,
     coordinate_size,
     force_errors,
     forces_on_bodies,
+    intensities,
+    moment_in_words,
     pressed_by,
     resolved_size,
 )
 from bemcontact.report.formatting import number, vector, with_unit, zero_if_negligible
 from bemcontact.report.peak_places import level_zones
+from bemcontact.serialization import csv_text
 
 ZONE_COLUMNS = (
     "case", "zone", "intervals", "length", "peak", "peak_error", "peak_x", "peak_y", "force_x", "force_y",
@@ -56,19 +57,17 @@ def zone_rows(record: JsonObject, units: Units) -> Iterator[dict[str, str]]:
 
     The record is the JSON of a result. A zone that does not touch has a dash for its peak and intensity.
     """
-    size, pressed = coordinate_size(record), pressed_by(record)
     forces, places = forces_on_bodies(record, units), [*contact_intervals(record, units, merged=True)]
     for zone, force in forces.items():
         own = [place for name, place in places if name == zone]
-        moment, errors = zero_if_negligible(record["moments"][zone], pressed * size), force_errors(record, zone)
-        known = size * sum(errors) / abs(moment) if moment and errors else None
+        errors = force_errors(record, zone)
         yield {
             "zone": zone,
             "contact": "; ".join(own) or "nowhere",
             "peak": _peak(record, zone, units) if own else NOTHING,
             "force": force,
-            "moment": with_unit(without_digits_beyond(moment, known), units.line_moment),
-            "intensity": "; ".join(_intensities(record, zone, units)) or NOTHING,
+            "moment": moment_in_words(record["moments"][zone], sum(errors) if errors else None, record, units),
+            "intensity": "; ".join(words for name, words in intensities(record, units) if name == zone) or NOTHING,
         }
 
 
@@ -96,7 +95,7 @@ def _peak_of_interval(record: JsonObject, interval: JsonObject, units: Units) ->
     peak, zone = interval["peak"], interval["zone"]
     if peak is None:
         return "infinite in this zone"
-    bar = next((item["bar"] for item in bars_of(record, "peak") if item["zone"] == zone), None)
+    bar = error_of(record, "peak", zone)
     others = (other["peak"]["pressure"] for other in record["intervals"] if other["zone"] == zone and other["peak"])
     largest = peak["pressure"] >= (1 - (bar or 0.0)) * max(others)
     value = with_bar(peak["pressure"], bar) if largest else without_digits_beyond(peak["pressure"], bar)
@@ -105,39 +104,23 @@ def _peak_of_interval(record: JsonObject, interval: JsonObject, units: Units) ->
 
 def _peak(record: JsonObject, zone: str, units: Units) -> str:
     """The largest pressure of a zone with its error and place, or that it is infinite."""
-    bar = next((item for item in bars_of(record, "peak") if item["zone"] == zone), None)
-    if bar is not None and bar["value"] is None:
+    if zone in infinite_peaks(record):
         return "infinite"
     own = [i for i, name in enumerate(record["zone"]) if name == zone]
     highest = max(own, key=lambda i: record["pressure"][i])
-    value = with_bar(record["pressure"][highest], None if bar is None else bar["bar"])
+    value = with_bar(record["pressure"][highest], error_of(record, "peak", zone))
     if zone in level_zones(record, 1.0):
         return f"{with_unit(value, units.stress)} all along"
     place = vector(record["nodes"][highest], units.length, scale=resolved_size(record))
     return f"{with_unit(value, units.stress)} at {place}"
 
 
-def _intensities(record: JsonObject, zone: str, units: Units) -> Iterator[str]:
-    """Intensities K of the infinite pressures of a zone, each with its law and place."""
-    for bar in bars_of(record, "intensity"):
-        if bar["zone"] == zone and bar["value"] is not None:
-            value = with_unit(with_bar(bar["value"], bar["bar"]), unit_of_bar(bar, units))
-            yield f"K = {value} in {bar['note']} at {vector(bar['at'], units.length, scale=coordinate_size(record))}"
-
-
-def zones_csv(results: Result | CaseResults) -> str:
-    """Write a line for each zone of each load case: what it carries, all its intervals of contact together.
+def _zone_lines(case: str, result: Result) -> Iterator[list[Any]]:
+    """A line for each zone: what it carries, all its intervals of contact together.
 
     Errors are absolute, in the unit of the number before them; empty where there is no number. The body is the one of
     several on which the force acts.
     """
-    return _written(
-        ZONE_COLUMNS, (row for case, result in by_case(results).items() for row in _zone_lines(case, result))
-    )
-
-
-def _zone_lines(case: str, result: Result) -> Iterator[list[Any]]:
-    """The lines of a result in `zones_csv`."""
     contact, pressure = result.contact, result.solution.pressure
     bars = {(bar.quantity, bar.zone, bar.interval): bar for bar in result.accuracy.bars}
     for order, zone in enumerate(contact.zone_names):
@@ -154,19 +137,12 @@ def _zone_lines(case: str, result: Result) -> Iterator[list[Any]]:
         ]  # fmt: skip
 
 
-def intervals_csv(results: Result | CaseResults) -> str:
-    """Write a line for each interval of contact of each load case: its ends, and what it alone carries.
+def _interval_lines(case: str, result: Result) -> Iterator[list[Any]]:
+    """A line for each interval of contact: its ends, and what it alone carries.
 
     Errors are absolute, in the unit of the number before them; empty where they are not known. A peak is empty where
     that of the zone is infinite.
     """
-    return _written(
-        INTERVAL_COLUMNS, (row for case, result in by_case(results).items() for row in _interval_lines(case, result))
-    )
-
-
-def _interval_lines(case: str, result: Result) -> Iterator[list[Any]]:
-    """The lines of a result in `intervals_csv`."""
     bars, count = {(bar.quantity, bar.zone, bar.interval): bar for bar in result.accuracy.bars}, Counter[str]()
     for item in result.footprint.intervals:
         order = count[item.zone]
@@ -191,15 +167,8 @@ def _error(bar: ErrorBar | None) -> float | str:
     return "" if bar is None or bar.bar is None or bar.value is None else abs(bar.value) * bar.bar
 
 
-def points_csv(results: Result | CaseResults) -> str:
-    """Write a line for each contact point of each load case: place, normal, pressure, gap, and whether it touches."""
-    return _written(
-        POINT_COLUMNS, (row for case, result in by_case(results).items() for row in point_lines(case, result))
-    )
-
-
 def point_lines(case: str, result: Result) -> Iterator[list[Any]]:
-    """The lines of a result in `points_csv`, zone by zone and along the boundary."""
+    """A line for each contact point, along the boundary: place, normal, pressure, gap, and whether it touches."""
     contact = result.contact
     for run in np.unique(contact.run).tolist():
         for i in contact.points_of_run(run).tolist():
@@ -210,26 +179,11 @@ def point_lines(case: str, result: Result) -> Iterator[list[Any]]:
             ]  # fmt: skip
 
 
-def _written(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
-    """CSV of a table."""
-    stream = io.StringIO()
-    table = csv.writer(stream, lineterminator="\n")
-    table.writerow(header)
-    table.writerows(rows)
-    return stream.getvalue()
-
-
-def stress_csv(results: Result | CaseResults) -> str:
-    """Write a line for each node of each element of each load case: stress along the edge, pressure, shear.
-
-    Where elements meet there is a line for either side. Stress is empty where it is infinite.
-    """
-    lines = (_stress_lines(case, result) for case, result in by_case(results).items())
-    return _written(STRESS_COLUMNS, chain.from_iterable(lines))
-
-
 def _stress_lines(case: str, result: Result) -> Iterator[list[Any]]:
-    """The lines of a result in `stress_csv`."""
+    """A line for each node of each element: stress along the edge, pressure, shear; empty where stress is infinite.
+
+    Where elements meet there is a line for either side.
+    """
     for edge, along in result.boundary_stress().items():
         values = [
             part.ravel().tolist() for part in (along.arc, along.hoop, along.pressure, along.shear, along.von_mises)
@@ -238,18 +192,11 @@ def _stress_lines(case: str, result: Result) -> Iterator[list[Any]]:
             yield [case, edge, *point, *("" if np.isnan(number) else number for number in numbers)]
 
 
-def largest_stresses_csv(results: Result | CaseResults) -> str:
-    """Write a line for each largest stress of each load case, and for each place where stress is infinite.
-
-    The error is absolute; empty where it is not known. Where stress is infinite there is no value. If there is no
-    largest stress, the last column says why.
-    """
-    lines = (_largest_lines(case, result) for case, result in by_case(results).items())
-    return _written(LARGEST_COLUMNS, chain.from_iterable(lines))
-
-
 def _largest_lines(case: str, result: Result) -> Iterator[list[Any]]:
-    """The lines of a result in `largest_stresses_csv`."""
+    """A line for each largest stress, and for each place where stress is infinite, which has no value.
+
+    The error is absolute; empty where it is not known. If there is no largest stress, the last column says why.
+    """
     largest = result.largest_stresses()
     peaks = [("max_shear", zone, peak, SHEAR_BELOW.format(zone)) for zone, peak in largest.shear.items()]
     peaks += [("von_mises", "inside", largest.inside, INSIDE), ("von_mises", "boundary", largest.boundary, ON_BOUNDARY)]
@@ -263,14 +210,25 @@ def _largest_lines(case: str, result: Result) -> Iterator[list[Any]]:
         yield [case, "von_mises", "infinite", "", "", x, y, *[""] * 4]
 
 
-def tables_of(results: Result | CaseResults) -> Mapping[str, str]:
+TABLES: dict[str, tuple[tuple[str, ...], Callable[[str, Result], Iterator[list[Any]]]]] = {
+    "zones.csv": (ZONE_COLUMNS, _zone_lines),
+    "intervals.csv": (INTERVAL_COLUMNS, _interval_lines),
+    "points.csv": (POINT_COLUMNS, point_lines),
+    "stress.csv": (STRESS_COLUMNS, _stress_lines),
+    "largest_stresses.csv": (LARGEST_COLUMNS, _largest_lines),
+}
+"""Name of a file -> columns of its table, and the lines of a result, which begin with the load case."""
+OF_STRESS = ("stress.csv", "largest_stresses.csv")
+"""Those that need the boundary of the body."""
+
+
+def result_table(results: Result | CaseResults, name: str) -> str:
+    """A table as CSV, by the name of its file."""
+    columns, lines = TABLES[name]
+    return csv_text(columns, chain.from_iterable(starmap(lines, by_case(results).items())))
+
+
+def tables_of(results: Result | CaseResults) -> dict[str, str]:
     """All tables as CSV, by the names of their files; of a condensed problem there is none of stress."""
-    tables = {
-        "zones.csv": zones_csv(results),
-        "intervals.csv": intervals_csv(results),
-        "points.csv": points_csv(results),
-    }
-    if all(result.boundary is not None for result in by_case(results).values()):
-        tables["stress.csv"] = stress_csv(results)
-        tables["largest_stresses.csv"] = largest_stresses_csv(results)
-    return tables
+    whole = all(result.boundary is not None for result in by_case(results).values())
+    return {name: result_table(results, name) for name in TABLES if whole or name not in OF_STRESS}

@@ -180,7 +180,8 @@ def written_axis(text: str) -> tuple[str, list[Any]]:
 
     `OptionError` says what is wrong.
     """
-    keys, equals, written = _at_equals(text)
+    keys, equals, written = text.partition("=")
+    keys = keys.strip()
     if not equals:
         raise OptionError(f"{text}: there is no '='; write {text}=a:b:n for n values from a to b, or {text}=v1,v2")
     items = [item.strip() for item in _items(written)]
@@ -201,12 +202,6 @@ def written_axis(text: str) -> tuple[str, list[Any]]:
         return keys, [written_value(item, keys) for item in items]
     except SpecError as error:
         raise OptionError(str(error).partition("\n")[0]) from None
-
-
-def _at_equals(text: str) -> tuple[str, str, str]:
-    """Text before the equals sign, the sign, and the text behind it."""
-    keys, equals, written = text.partition("=")
-    return keys.strip(), equals, written
 
 
 def _range(keys: str, first: str, last: str, count: str) -> list[float]:

@@ -131,8 +131,6 @@ def _ends_with_line(path: Path) -> bool:
 
 def _lock(file: IO[bytes], folder: Path) -> None:
     """Refuse a journal that another run has open; the system unlocks it when that run ends, however it ends."""
-    if not find_spec("fcntl"):  # Windows does without
-        return
     fcntl = import_module("fcntl")
     try:
         fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)

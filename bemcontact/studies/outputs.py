@@ -27,8 +27,8 @@ OF_MOVERS = ("motion", "rotation")
 """Outputs of each tool and free motion, as ``motion.press``; ``rotation.block`` has those of a body."""
 FREE = ("translation", "rotation")
 """First words of the free motions."""
-TURNS, NEARLY = "rotation ", "nearly a translation"
-"""First word of a free rotation, and what is in the name of one that is none but for its far center."""
+TURNS = "rotation "
+"""First word of a free rotation; one about a far center is a translation with a small turn."""
 ROUND_OFF = 1e-9
 """Rotation times coordinates, relative to displacements, that is round-off; also pressure, relative to the peak."""
 OF_STRESS = ("von_mises", "max_shear")
@@ -141,9 +141,13 @@ def _of_rotations(result: Result) -> Iterator[tuple[str, Reading]]:
         pressed = pressure > ROUND_OFF * pressure.max()
         least = max(least, angle_of_round_off(contact.points, contact.normals, pressed))
     for name, angle in zip(contact.motion_names, angles.tolist(), strict=True):
-        turns = name.startswith(TURNS) and " of the tool " not in name and NEARLY not in name
-        if turns:
+        if turns_a_body(name):
             yield f"rotation.{_without_center(name)}", Reading(value=0.0 if abs(angle) <= least else angle)
+
+
+def turns_a_body(motion: str) -> bool:
+    """Whether a free motion, by its name, is the rotation of a body."""
+    return motion.startswith(TURNS) and " of the tool " not in motion
 
 
 def _without_center(mover: str) -> str:

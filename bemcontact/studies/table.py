@@ -1,6 +1,5 @@
 """The table of a study: all members with their outputs and verdicts, as columns, CSV, Parquet and JSON."""
 
-import csv
 import io
 import json
 from collections import Counter
@@ -15,7 +14,7 @@ from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import is_real
 from bemcontact.contact.record import UnitsRecord
 from bemcontact.problems.units import Units
-from bemcontact.serialization import Leaf, Record, Recorded
+from bemcontact.serialization import Leaf, Record, Recorded, csv_text
 from bemcontact.studies.axes import Axis
 from bemcontact.studies.outputs import OF_MOVERS, columns_of
 from bemcontact.studies.rows import MemberRow, MemberStatus, in_one_message
@@ -142,11 +141,8 @@ class StudyTable(Recorded, Tabular):
 
     def to_csv(self) -> str:
         """Write the table as CSV, a line for each member; empty where there is no value."""
-        stream, columns = io.StringIO(), self.table()
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows(zip(*(map(_cell, column) for column in columns.values()), strict=True))
-        return stream.getvalue()
+        columns = self.table()
+        return csv_text(columns, zip(*(map(_cell, column) for column in columns.values()), strict=True))
 
     def save_parquet(self, path: Path) -> bool:
         """Write the table as Parquet; False without pyarrow, the extra ``parquet``."""
@@ -200,7 +196,8 @@ def _cell(value: Any) -> str:
 def _of_one_kind(values: Sequence[Any]) -> Sequence[Any]:
     """Values of a column as numbers, if all are, or else as texts."""
     if all(value is None or is_real(value) for value in values):
-        return values if all(isinstance(value, int) for value in values) else [_float(value) for value in values]
+        whole = all(isinstance(value, int) for value in values)
+        return values if whole else [None if value is None else float(value) for value in values]
     return [None if value is None else _cell(value) for value in values]
 
 
@@ -208,11 +205,6 @@ def _kind(values: Sequence[Any]) -> str:
     """Name that pyarrow has for the kind of values, which are of one kind or None."""
     first = next((value for value in values if value is not None), None)
     return "null" if first is None else {int: "int64", float: "float64", str: "string"}[type(first)]
-
-
-def _float(value: Any) -> float | None:
-    """A number as a float."""
-    return None if value is None else float(value)
 
 
 def sorted_rows(rows: Mapping[int, MemberRow]) -> tuple[MemberRow, ...]:

@@ -159,12 +159,7 @@ def one_thread() -> Iterator[None]:
             os.environ[THREADS] = before
 
 
-def listed_rows(plan: StudyPlan, task: Task) -> list[MemberRow]:
-    """Solve a task in a process that takes one thread."""
-    return [*rows_of_task(plan, task)]
-
-
 def rows_on_one_thread(plan: StudyPlan, task: Task) -> list[MemberRow]:
     """Solve a task in a process of somebody else, such as a worker of a cluster."""
     with one_thread():
-        return listed_rows(plan, task)
+        return [*rows_of_task(plan, task)]

@@ -17,7 +17,7 @@ from multiprocessing.connection import Connection
 from bemcontact.errors import ProblemError
 from bemcontact.studies.plan import StudyPlan
 from bemcontact.studies.rows import MemberRow, failed_row
-from bemcontact.studies.work import Task, listed_rows, one_thread, rows_of_task, take_one_thread
+from bemcontact.studies.work import Task, one_thread, rows_of_task, take_one_thread
 
 AHEAD = 2
 """Tasks that wait for each worker."""
@@ -185,7 +185,7 @@ def _possible(first: int, last: int) -> bool:
 
 def _rows(task: Task) -> list[MemberRow]:
     """Solve a task of the plan in a worker process."""
-    return listed_rows(_PLAN.get(), task)
+    return [*rows_of_task(_PLAN.get(), task)]
 
 
 def _end_with(ends_with: Connection) -> None:

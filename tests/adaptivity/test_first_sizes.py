@@ -10,7 +10,7 @@ from several_bodies import elastic
 from bemcontact.adaptivity import mesh_sizes
 from bemcontact.adaptivity.first_sizes import sized_outline, surface_sizes
 from bemcontact.adaptivity.mesh_sizes import first_mesh
-from bemcontact.adaptivity.sizes import GROWTH
+from bemcontact.adaptivity.sizes import GROWTH, SizeField
 from bemcontact.problems import Problem
 from bemcontact.problems.nearest_places import surface_corners
 
@@ -148,7 +148,7 @@ def test_a_corner_halves_the_size():
     problem = block(8, 8)
     shape = sized_outline(problem)
     limits = np.array(shape.limits[0])
-    at = shape.loops[0].size_at(shape.loops[0].joints, limits, ())
+    at = SizeField(loop=shape.loops[0], limits=limits, layers=()).at(shape.loops[0].joints)
     assert (at <= 2.0).all()
 
 

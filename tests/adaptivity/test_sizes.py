@@ -1,5 +1,6 @@
 """Element ends keep to the sizes asked for, wherever the loop begins and whatever the unit is."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 from math import ceil
 
@@ -20,6 +21,7 @@ from bemcontact.adaptivity.sizes import (
     Layers,
     Limit,
     Loop,
+    SizeField,
     layer_sizes,
 )
 from bemcontact.arrays import Array
@@ -27,6 +29,10 @@ from bemcontact.problems.boundary import Boundary
 
 WIDTH, HEIGHT = 8.0, 4.0
 AROUND = 2 * (WIDTH + HEIGHT)
+
+
+def size_at(loop: Loop, positions: Array, limits: Array, layers: Sequence[Layers] = ()) -> Array:
+    return SizeField(loop=loop, limits=limits, layers=layers).at(positions)
 
 
 def rectangle(first: int = 0, unit: float = 1.0) -> Loop:
@@ -62,7 +68,7 @@ LIMITS = st.lists(
 def test_the_size_respects_every_limit_and_grows_by_no_more_than_the_growth(rows: list, at: list[float]):
     loop = rectangle()
     limits = np.array([whole(loop, 2.0), *rows])
-    size = loop.size_at(np.array(at), limits, ())
+    size = size_at(loop, np.array(at), limits)
     for low, high, most in limits:
         inside = np.mod(np.array(at) - low, loop.length) <= high - low
         assert (size[inside] <= most * (1 + 1e-12)).all()
@@ -81,7 +87,7 @@ def test_the_size_is_the_least_of_all_limits(rows: list, points: list, at: list[
     forwards = np.mod(places[:, None] - limits[:, 0], loop.length)
     beyond = np.maximum(np.minimum(loop.length - forwards, forwards - (limits[:, 1] - limits[:, 0])), 0.0)
     least = (limits[:, 2] + GROWTH * beyond).min(axis=1)
-    assert loop.size_at(places, limits, ()) == pytest.approx(least, rel=1e-9, abs=1e-12)
+    assert size_at(loop, places, limits) == pytest.approx(least, rel=1e-9, abs=1e-12)
 
 
 @settings(max_examples=40, deadline=None)
@@ -91,9 +97,9 @@ def test_a_loop_has_no_first_position(rows: list, at: float):
     loop, other = rectangle(), rectangle(1)
     limits = np.array([whole(loop, 2.0), *rows])
     turned = limits - [WIDTH, WIDTH, 0.0]
-    here = loop.size_at(np.array([at, at + loop.length]), limits, ())
+    here = size_at(loop, np.array([at, at + loop.length]), limits)
     assert here[1] == pytest.approx(here[0], rel=1e-9)
-    assert other.size_at(np.array([at - WIDTH]), turned, ())[0] == pytest.approx(here[0], rel=1e-9)
+    assert size_at(other, np.array([at - WIDTH]), turned)[0] == pytest.approx(here[0], rel=1e-9)
 
 
 @settings(max_examples=40, deadline=None)
@@ -107,7 +113,7 @@ def test_no_element_is_much_larger_than_the_size_at_its_ends(rows: list):
     loop = rectangle()
     limits = np.array([whole(loop, 2.0), *rows])
     ends = positions(loop, loop.element_ends(limits, (), ()))
-    sizes = loop.size_at(ends, limits, ())
+    sizes = size_at(loop, ends, limits)
     most = (np.exp(1.05 * GROWTH) - 1) / GROWTH * (1 + RESOLUTION * GROWTH)
     least = np.minimum(sizes[:-1], sizes[1:])
     assert (np.diff(ends) <= most * least).all()
@@ -203,8 +209,8 @@ def test_layers_at_the_seam_of_a_loop_reach_to_both_sides():
     layer = Layers(position=0.0, width=2.0, count=5.0, after=True)
     other = Layers(position=AROUND - WIDTH, width=2.0, count=5.0, after=True)
     at = np.linspace(-3, 3, 25)
-    size = here.size_at(at, np.array([whole(here, 9.0)]), [layer])
-    assert there.size_at(at - WIDTH, np.array([whole(there, 9.0)]), [other]) == pytest.approx(size, rel=1e-9)
+    size = size_at(here, at, np.array([whole(here, 9.0)]), [layer])
+    assert size_at(there, at - WIDTH, np.array([whole(there, 9.0)]), [other]) == pytest.approx(size, rel=1e-9)
 
 
 @settings(max_examples=20, deadline=None)
@@ -231,5 +237,5 @@ def test_idle_limits_change_nothing(rows: list, at: list[float]):
     limits = np.array([whole(loop, 2.0), *rows])
     kept = loop.without_idle(limits)
     checked = np.concatenate([np.linspace(low, high, 3) for low, high, _ in limits])
-    assert loop.size_at(checked, kept, ()) == pytest.approx(loop.size_at(checked, limits, ()), rel=1e-12)
-    assert loop.size_at(np.array(at), kept, ()) == pytest.approx(loop.size_at(np.array(at), limits, ()), rel=1e-8)
+    assert size_at(loop, checked, kept) == pytest.approx(size_at(loop, checked, limits), rel=1e-12)
+    assert size_at(loop, np.array(at), kept) == pytest.approx(size_at(loop, np.array(at), limits), rel=1e-8)

@@ -16,7 +16,7 @@ from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.bem.discretization import body_of
 from bemcontact.report.facts import facts
 from bemcontact.report.result_page import render
-from bemcontact.report.zones import largest_stresses_csv
+from bemcontact.report.zones import result_table
 
 FLAT = {"kind": "plane", "point": [0, 2], "normal": [0, -1]}
 ROUND = {"kind": "circle", "center": [4, 12], "radius": 10, "body": "outside"}
@@ -650,7 +650,7 @@ def test_forces_of_contacts_are_not_summed_over_bodies():
     assert "of all surfaces" not in page
     assert "on middle" in page
     assert "normals of the second body" not in page
-    rows = list(csv.DictReader(io.StringIO(largest_stresses_csv(result))))
+    rows = list(csv.DictReader(io.StringIO(result_table(result, "largest_stresses.csv"))))
     assert {row["body"] for row in rows if row["value"]} <= {"top", "middle", "low"}
     inside = result.largest_stresses().inside
     assert inside is None or f" in {inside.body}" in page

@@ -13,9 +13,9 @@ import bemcontact
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report import folder
-from bemcontact.report.breakpoints import breakpoint_words
 from bemcontact.report.formatting import number, vector
 from bemcontact.report.path_page import render
+from bemcontact.report.path_text import breakpoint_words
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.options import ComparisonOptions
 from bemcontact.report.bars import mesh_in_short
 from bemcontact.report.page import render
-from bemcontact.report.path_verdicts import path_verdicts
+from bemcontact.report.path_text import path_verdicts
 from bemcontact.report.verdicts import (
     in_short,
     mesh_study_verdicts,

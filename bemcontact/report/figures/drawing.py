@@ -1,6 +1,7 @@
 """The pictures that objects draw of themselves, by name; `bemcontact.views` has the method."""
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -63,8 +64,8 @@ def _drawing(item: Any, options: dict[str, Any]) -> Callable[[Axes], None]:
             choices = ", ".join([*takes, "axes", "what"])
             raise OptionError(f"the picture '{what}' has no option '{name}'; it takes {choices}")
     given = {name: value for name, value in options.items() if value is not None}
-    if "zone" in given:
-        _ensure_zone(given["zone"], _zones(item))
+    if "zone" in given and given["zone"] not in (known := _zones(item)):
+        raise OptionError(f"there is no contact zone {shown(given['zone'])}; take one of {', '.join(known)}")
     if "stress" in given:
         given["stress"] = named(StressMeasure, given["stress"], "stress")
     if isinstance(item, Result) and what in ("contact", "deformed") and item.boundary is None:
@@ -85,20 +86,10 @@ def _zones(item: Any) -> Sequence[str]:
     return first.contact.zone_names
 
 
-def _ensure_zone(zone: object, known: Sequence[str]) -> None:
-    """Refuse the name of a zone that does not exist."""
-    if zone not in known:
-        raise OptionError(f"there is no contact zone {shown(zone)}; take one of {', '.join(known)}")
-
-
 def _draw_problem(axes: Axes, problem: Problem) -> None:
     """Draw a problem on the mesh that it states, or on the first one of a search."""
     meshed = first_mesh(problem) if problem.adapts else problem
     draw_problem(axes, meshed, build(meshed))
-
-
-def _draw_stress(axes: Axes, result: Result, stress: StressMeasure = StressMeasure.VON_MISES) -> None:
-    draw_deformed(axes, result, stress)
 
 
 def _draw_ends(axes: Axes, path: ParameterPath, zone: str | None = None) -> None:
@@ -157,7 +148,7 @@ PICTURES: dict[type, dict[str, tuple[Draw, tuple[str, ...]]]] = {
         "pressure": (draw_pressure, ("zone",)),
         "gap": (draw_gap, ("zone",)),
         "deformed": (draw_deformed, ()),
-        "stress": (_draw_stress, ("stress",)),
+        "stress": (partial(draw_deformed, stress=StressMeasure.VON_MISES), ("stress",)),
     },
     CaseResults: {"pressure": (draw_case_pressures, ("zone",))},
     Comparison: {"pressure": (_draw_contenders, ("zone",))},

@@ -28,7 +28,7 @@ from bemcontact.report.figures.page import (
     short_label,
 )
 from bemcontact.report.formatting import number
-from bemcontact.report.path_verdicts import path_verdicts
+from bemcontact.report.path_text import path_verdicts
 from bemcontact.report.verdicts import in_short, overall
 
 WIDTH, HEIGHT = 5.6, 2.5

@@ -207,7 +207,8 @@ def draw_pressure(axes: Axes, result: Result, zone: str | None = None) -> None:
 def draw_gap(axes: Axes, result: Result, zone: str | None = None) -> None:
     """Draw the gap over the distance along one contact zone, or along each; round-off is drawn as closed."""
     scale = result.contact.scales.displacement
-    gap = np.where(np.abs(gap := _gap(result)) <= CLOSED * scale, 0.0, gap)
+    gap = result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes)
+    gap = np.where(np.abs(gap) <= CLOSED * scale, 0.0, gap)
     gap = np.where(of_zone(result.contact, zone), gap, 0.0)
     _draw_along(axes, result, gap, zone)
     name_axis(axes.yaxis, labeled("gap", units_of(result.contact).length))
@@ -302,8 +303,3 @@ def show_around(axes: Axes, pieces: Sequence[Piece], results: Sequence[Result], 
     )
     axes.set(xlim=window, ylim=(-0.05 * shown.max() or None, 1.1 * shown.max() or None))
     name_axis(axes.xaxis, only_around(axes.get_xlabel()))
-
-
-def _gap(result: Result) -> Array:
-    """Gap (n,) recomputed from the pressure."""
-    return result.contact.gap(result.solution.pressure, result.solution.rigid_amplitudes)

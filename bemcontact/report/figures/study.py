@@ -100,16 +100,12 @@ def _curves(study: StudyTable, others: Sequence[int]) -> Iterator[tuple[str, lis
         for order, position in enumerate(chosen):
             value = axis.values[position]
             rows = [row for row in study.rows if row.values[axis.name] == value]
-            yield f"{axis.title or _last(axis.keys[0])} = {value_in_words(value)}", rows, CURVES[order % len(CURVES)]
+            name = axis.title or axis.keys[0].rpartition(".")[2]
+            yield f"{name} = {value_in_words(value)}", rows, CURVES[order % len(CURVES)]
         return
     middle = {study.axes[i].name: study.axes[i].values[len(study.axes[i].values) // 2] for i in others}
     rows = [row for row in study.rows if all(row.values[name] == value for name, value in middle.items())]
     yield "others at their middle values" if others else "", rows, BLACK
-
-
-def _last(name: str) -> str:
-    """Last step of a key, for a legend."""
-    return name.rpartition(".")[2]
 
 
 def _draw_band(axes: Axes, rows: Sequence[MemberRow], column: str, name: str, place: dict[str, float]) -> None:

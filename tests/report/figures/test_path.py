@@ -14,7 +14,7 @@ import bemcontact
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.parametric.parameter_path import ParameterPath
 from bemcontact.report import figures
-from bemcontact.report.path_verdicts import path_sentence
+from bemcontact.report.path_text import path_sentence
 
 MODELS = Path(__file__).parents[3] / "models"
 
