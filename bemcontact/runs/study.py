@@ -110,6 +110,8 @@ def study(
     ------
     ProblemError
         If a key, a value or an output is wrong by itself. This is found before anything is solved.
+    BemContactError
+        If the processes cannot begin to work, as those of a script without that line, or the cluster is lost.
     OSError
         If the folder cannot be written, or holds other files.
     """

@@ -14,7 +14,7 @@ from contextlib import AbstractContextManager, contextmanager, suppress
 from contextvars import ContextVar
 from multiprocessing.connection import Connection
 
-from bemcontact.errors import ProblemError
+from bemcontact.errors import BemContactError, ProblemError
 from bemcontact.studies.plan import StudyPlan
 from bemcontact.studies.rows import MemberRow, failed_row
 from bemcontact.studies.work import Task, one_thread, rows_of_task, take_one_thread
@@ -25,6 +25,11 @@ PARTS = 4
 """Parts of the values of a study that each worker checks."""
 ENDED = "the process that solved it was ended, perhaps because there was not enough memory"
 """Sentence of a member whose process does not survive it."""
+NOT_BEGUN = (
+    "the processes of the study end before they begin to work. Each of them imports the script that starts them: it "
+    "must be a file, and call the study below the line if __name__ == '__main__'. Otherwise take workers=1"
+)
+"""Sentence of a study whose processes cannot begin."""
 
 _PLAN = ContextVar[StudyPlan]("plan")
 """In a worker process: the plan of its tasks, which are small without it, however many members there are."""
@@ -69,13 +74,19 @@ class Processes(AbstractContextManager["Processes"]):
         inherited = self._alive if forked else None
         begin = (plan, self._ends_with, inherited)
         self.pool = ProcessPoolExecutor(count, context, initializer=_begin, initargs=begin)
+        self._first: list[Future[int]] = []
 
     def get_ready(self) -> None:
         """Start the processes, which read their modules if need be; otherwise each starts with its first task."""
         with suppress(BrokenProcessPool), warnings.catch_warnings():  # the first task will find out
             warnings.filterwarnings("ignore", ".* is multi-threaded", DeprecationWarning)  # BLAS knows how to fork
             for _ in range(self.count):
-                self.pool.submit(os.getpid)
+                self._first.append(self.pool.submit(os.getpid))
+
+    @property
+    def begun(self) -> bool:
+        """Whether one of the processes that get ready has begun to work."""
+        return any(first.done() and first.exception() is None for first in self._first)
 
     def find_possible(self) -> bool:
         """Whether forked processes find all values of the plan possible; False too if one of them ends."""
@@ -114,17 +125,27 @@ def rows_by_processes(tasks: Iterable[Task], processes: Processes) -> Rows:
     """Solve tasks by several processes, in any order.
 
     If a process is ended from outside, its tasks are solved again, each member by itself; a member of which the process
-    ends again is a row that failed.
+    ends again is a row that failed. `BemContactError` if no process can begin.
     """
     waiting, count, plan = iter(tasks), processes.count, processes.plan
     while lost := (yield from _until_broken(waiting, processes)):
         for task in lost:
-            for again in (yield from _until_broken(iter([task]), Processes(1, plan))):
+            for again in (yield from _by_one(task, plan)):
                 for number in again.wanted:
                     alone = Task(group=(number,), wanted=(number,))
-                    if (yield from _until_broken(iter([alone]), Processes(1, plan))):
+                    if (yield from _by_one(alone, plan)):
                         yield failed_row(number, plan.values(number), ENDED)
         processes = Processes(count, plan)
+
+
+def _by_one(task: Task, plan: StudyPlan) -> Generator[MemberRow, None, Sequence[Task]]:
+    """Solve a task by a process of its own; return it if the process is ended, `BemContactError` if it cannot begin."""
+    process = Processes(1, plan)
+    process.get_ready()
+    lost = yield from _until_broken(iter([task]), process)
+    if lost and not process.begun:
+        raise BemContactError(NOT_BEGUN)
+    return lost
 
 
 def _until_broken(tasks: Iterator[Task], processes: Processes) -> Generator[MemberRow, None, Sequence[Task]]:

@@ -157,7 +157,10 @@ def removed(file: Path) -> Iterator[None]:
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--only", nargs="+", choices=SECTIONS, default=[*SECTIONS], metavar="SECTION")
+    parser.add_argument(
+        "--only", nargs="+", choices=SECTIONS, default=[*SECTIONS], metavar="SECTION",
+        help=f"of {', '.join(SECTIONS)}; all by default",
+    )  # fmt: skip
     parser.add_argument("--quick", action="store_true", help="fewer and smaller problems, in about three minutes")
     default = Path(tempfile.gettempdir()) / "bemcontact-speed"
     parser.add_argument(

@@ -114,3 +114,24 @@ def test_a_worker_takes_one_thread_even_for_large_matrices():
     two = os.environ | dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "2")
     answer = subprocess.run([sys.executable, "-c", WORKER], env=two, capture_output=True, text=True, check=True)
     assert answer.stdout.split() == ["1", "{1}"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("by_standard_input", [False, True])
+def test_processes_that_cannot_begin_are_an_error_and_no_rows(tmp_path: Path, by_standard_input: bool):
+    """They import the script again: one without the line for it calls the study in each, and standard input is gone."""
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import bemcontact\n"
+        f"problem = bemcontact.load({str(MODEL)!r}, variant='paper')\n"
+        f"bemcontact.study(problem, {{'conditions.top.pressure': [10, 20]}}, out='out', workers=2)\n"
+    )
+    command = [sys.executable, "-" if by_standard_input else str(script)]
+    with script.open() as source:
+        ended = subprocess.run(
+            command, check=False, cwd=tmp_path, stdin=source, capture_output=True, text=True, timeout=100
+        )
+    assert ended.returncode == 1
+    assert ended.stderr.strip().endswith(f"BemContactError: {workers.NOT_BEGUN}")
+    assert not list((tmp_path / "out").glob("study.*"))
+    assert (tmp_path / "out" / "members.jsonl").read_text().count("\n") <= 1  # the first line, and no row
