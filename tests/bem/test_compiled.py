@@ -15,8 +15,9 @@ from bodies import MESHES, arc, even, mesh_of, rectangle, segment, solved, syste
 
 import bemcontact
 from bemcontact import compilation, threads
+from bemcontact.adaptivity.mesh_sizes import first_mesh
 from bemcontact.bem import system as system_module
-from bemcontact.bem.condense import condense
+from bemcontact.bem.condense import condense, condensed
 from bemcontact.bem.discretization import body_of
 from bemcontact.bem.rigid_motions import free_rigid_motions
 from bemcontact.bem.solution import assemble, residual
@@ -44,6 +45,7 @@ BODIES = MESHES | {
 
 MODELS = Path(__file__).parents[2] / "models"
 OF_ONE_BODY = [path for path in sorted(MODELS.rglob("*.yaml")) if "\nbodies:" not in path.read_text(encoding="utf-8")]
+OF_SEVERAL_BODIES = [path for path in sorted(MODELS.rglob("*.yaml")) if path not in OF_ONE_BODY]
 SHIPPED = [path.relative_to(MODELS).with_suffix("").as_posix() for path in OF_ONE_BODY]
 
 
@@ -130,6 +132,14 @@ def test_the_source_of_the_machine_code_and_numpy_agree(name, axes):
 def test_machine_code_and_numpy_agree_on_shipped_models(name, refine):
     """They have contact, supports, symmetry, corners, cracks, several loops, tools and load cases."""
     ensure_the_same(of_model(name, refine))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", OF_SEVERAL_BODIES, ids=lambda path: path.stem)
+def test_machine_code_and_numpy_agree_on_each_of_several_bodies(path):
+    """Their mesh is the first of a search: no model of several bodies states one."""
+    for part in condensed(first_mesh(bemcontact.load(path))).parts:
+        ensure_the_same(part.system)
 
 
 @pytest.mark.slow
