@@ -10,7 +10,7 @@ nothing but these normals and levers holds the body. It is about 1e-5 where cont
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -40,6 +40,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.known_motions import KnownMotions
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.frozen import frozen
 from bemcontact.problems.body_surface import BodySurface
 from bemcontact.problems.curves import cross
 from bemcontact.problems.edge_places import curvatures, nearest_on, places_at
@@ -56,7 +57,7 @@ UNSEEN = 1e-9
 """Change of gaps under pressure, over the largest one by a free motion, that is none."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class MovingBody:
     """Free motions of a solution, with the boundary behind the contact points.
 

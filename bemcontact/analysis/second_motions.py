@@ -4,7 +4,7 @@ Where slopes alone see a motion that no load drives, it may go on by an amount t
 needs.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import scipy.linalg
@@ -18,6 +18,7 @@ from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.formulations import complementarity
+from bemcontact.frozen import frozen
 
 LINKED = 0.1
 """Part of the normals along which contact sees two motions, from which they may be seen along the same ones."""
@@ -38,7 +39,7 @@ NO_CHANGE = 1e-7
 """Difference of the gaps, over the displacement scale of contact, that changes nothing."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class SecondMotions:
     """Motions from a first solution to a second one.
 

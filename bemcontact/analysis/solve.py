@@ -28,6 +28,7 @@ from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.formulations.multistart import multistart, solve_contact
 from bemcontact.formulations.starts import with_start_read
+from bemcontact.frozen import frozen
 from bemcontact.options import (
     ASKING,
     STARTS,
@@ -251,7 +252,7 @@ def solve_prepared(
     return assessed(prepared, solution, options.weights, watch, searches)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Prepared:
     """A condensed problem, ready to be solved under one load case."""
 

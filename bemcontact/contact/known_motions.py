@@ -1,6 +1,5 @@
 """What is known of the amounts of free motions: angles, and the motions whose amount nothing determines."""
 
-from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
@@ -8,12 +7,13 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, freeze_arrays
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.frozen import frozen
 
 TAKES_PART = 1e-9
 """Displacement of a tool in a motion, over the largest one in any, from which the tool takes part in it."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class KnownMotions:
     """What is known of the free motions of a solution.
 
