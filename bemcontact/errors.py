@@ -11,13 +11,14 @@ have none, and `escaped` replaces those in anything else that is shown, such as 
 import re
 import unicodedata
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+from bemcontact.frozen import frozen_value
 
 KeyPath = tuple[str | int, ...]
 """Keys and list positions from the top of a spec to a value, such as ``("conditions", "top", "pressure")``."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Issue:
     """One mistake in a problem.
 

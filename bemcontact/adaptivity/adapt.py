@@ -1,7 +1,7 @@
 """A mesh that nobody makes: solve, bisect, compare, and refine until the error bars are below the accuracy asked."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from bemcontact.adaptivity.singularities import Singularity, recognized
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
 from bemcontact.bem.condense import Condensation, Condenser, condensed
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
+from bemcontact.frozen import frozen
 from bemcontact.problems.problem import ACCURACY, Problem
 
 NONE_ASKED = "no accuracy is asked for, and errors are not estimated"
@@ -38,7 +39,7 @@ ROUNDED = 100 * float(np.finfo(float).eps)
 """Deformation over the largest coordinate or displacement, below which gaps are round-off."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Meshed:
     """A problem on the mesh that was found for it or stated, condensed, with the accuracy under each load case."""
 

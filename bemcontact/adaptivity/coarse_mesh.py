@@ -4,7 +4,7 @@ The error is at most the difference of the two answers and the error of the seco
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from bemcontact.adaptivity.zone_runs import ZoneRun
 from bemcontact.arrays import Array
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.bem import reference_element
+from bemcontact.frozen import frozen
 
 FOUND = "by the difference from a mesh that was found: this one is too coarse to tell its own error"
 """Note on such an error bar."""
@@ -24,7 +25,7 @@ GAUSS_POINTS = 3
 """Points of integration between two element ends, for the square of a difference of quadratic pressures."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class CoarseMesh:
     """A stated mesh beside one that was found for the same problem, under one load case.
 

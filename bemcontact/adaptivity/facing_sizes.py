@@ -1,20 +1,20 @@
 """Element sizes where two elastic bodies face each other: the first has those of both, the second follows the first."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from bemcontact.adaptivity.sizes import Limit, Loop
 from bemcontact.arrays import Array
 from bemcontact.bem.division import feet, in_order, matched_parts
+from bemcontact.frozen import frozen
 from bemcontact.problems.problem import Problem
 
 SAMPLES = 513
 """Places of a stretch between which the opposite ones are interpolated."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class FacingStretch:
     """A stretch of the boundary of one body opposite to one of another body.
 

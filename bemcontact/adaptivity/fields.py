@@ -1,7 +1,7 @@
 """The answer on one mesh: pressure, traction and displacement by element, and the stretches of contact."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from bemcontact.errors import SingularSystemError, SolverError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.active_set import ContactBlock
 from bemcontact.formulations.scaling import scale, scaled_change, unscaled_point
+from bemcontact.frozen import frozen
 from bemcontact.problems.problem import Problem
 
 SLIT = 1e-3
@@ -35,7 +36,7 @@ ROUNDED = 1e-13
 """Penetration over the size of the mesh that is round-off of coordinates, whatever the displacement is."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class CaseAnswer:
     """The contact state under one load case on one mesh.
 
@@ -115,7 +116,7 @@ class CaseAnswer:
         yield from boundary_changes(self.condensation, *map(np.array, zip(*changes, strict=True)))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Solved:
     """One mesh: the contact state under each load case, and the runs of the zones."""
 
@@ -226,7 +227,7 @@ def _without_slits(stretches: Iterable[Stretch]) -> tuple[Stretch, ...]:
     return tuple(joined)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class MeshDifference:
     """What bisecting every element changes: `fine` is on the halves of the elements of `coarse`; one load case.
 

@@ -1,7 +1,6 @@
 """Element sizes from the geometry alone: curvature, edges, corners, thickness, and where the surface comes near."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from math import pi
@@ -12,6 +11,7 @@ from bemcontact.adaptivity.sizes import Limit, Loop
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.mesh import CORNER
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 from bemcontact.problems.body_surface import AnyShape, BodySurface
 from bemcontact.problems.curves import Edge
 from bemcontact.problems.nearest_places import gaps, nearest_places, surface_corners
@@ -49,7 +49,7 @@ KEPT = 4
 """Outlines that are kept for other problems with the same one."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class SizedOutline:
     """All loops of all bodies, sampled, with the thickness of the body at each sample.
 

@@ -13,6 +13,7 @@ from bemcontact.adaptivity.first_sizes import SizedOutline, sized_outline, surfa
 from bemcontact.adaptivity.sizes import GROWTH, SAME, Layers, Limit, Loop
 from bemcontact.arrays import Array
 from bemcontact.errors import Issue, ProblemError
+from bemcontact.frozen import frozen_value
 from bemcontact.problems.geometry import MOST_ELEMENTS
 from bemcontact.problems.problem import Problem
 
@@ -29,7 +30,7 @@ def as_of_one(unknowns: Iterable[int]) -> int:
     return round(sum(count**3 for count in unknowns) ** (1 / 3))
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class ContactEnd:
     """An end of contact on a loop."""
 

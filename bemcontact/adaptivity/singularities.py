@@ -20,6 +20,7 @@ from bemcontact.adaptivity.wedge_exponents import (
 from bemcontact.adaptivity.zone_runs import ZoneRun, contact_beside
 from bemcontact.arrays import IntArray
 from bemcontact.bem.mesh import CORNER
+from bemcontact.frozen import frozen_value
 from bemcontact.problems.curves import cross
 from bemcontact.problems.nearest_places import surface_corners
 
@@ -52,7 +53,7 @@ SAME = 1e-6
 """Distance of two places over the length of their run up to which they are one."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class ContactPlace:
     """A place on a run where the pressure may be infinite."""
 
@@ -73,7 +74,7 @@ class ContactPlace:
     """
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Singularity:
     """A place where the pressure is infinite like s^-α."""
 

@@ -1,7 +1,6 @@
 """Element sizes along the closed loops of the boundary, and the element ends that follow from them."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil
 from typing import NamedTuple
@@ -10,6 +9,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen, frozen_value
 from bemcontact.problems.curves import Edge
 
 GROWTH = 1.2
@@ -38,7 +38,7 @@ class Limit(NamedTuple):
     size: float
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Layers:
     """Elements that grow like w (i/n)³ from an end of contact: n in contact, fewer outside.
 
@@ -69,7 +69,7 @@ def layer_sizes(layers: Sequence[Layers], beyond: Array, growth: float) -> Array
     return inside + growth * np.maximum(d - w, 0.0)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Loop:
     """A closed loop of edges; positions on it are arc lengths from its start [L].
 
@@ -195,7 +195,7 @@ class Loop:
             yield samples[first:last], size[first:last]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class SizeField:
     """The element size along a loop that limits, rows of (l, 3), and layers allow: the least of theirs.
 

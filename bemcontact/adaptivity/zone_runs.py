@@ -1,7 +1,6 @@
 """The unbroken pieces (runs) of the contact zones along the edges, and the stretches of contact on them."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from bemcontact.bem.mesh import CORNER
 from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.frozen import frozen, frozen_value
 from bemcontact.problems.body_surface import BodyZone
 from bemcontact.problems.curves import Edge
 from bemcontact.serialization import Pair
@@ -22,7 +22,7 @@ SAME = 1e-12
 POINTS_OF_ELEMENT = 3
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class ZoneRun:
     """One unbroken piece of a contact zone; positions on it are arc lengths of its edges from its start [L].
 
@@ -143,7 +143,7 @@ def _turns(edges: Sequence[Edge], *, closed: bool) -> Array:
     return turns
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Stretch:
     """A stretch of contact on a run.
 

@@ -1,7 +1,6 @@
 """Stress and displacement of one state of a body: at its points and along its edges, and where stress is infinite."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -17,6 +16,7 @@ from bemcontact.bem.outline import Outline
 from bemcontact.bem.stress_field import NEARLY, Located, StressField
 from bemcontact.contact.stress import EdgeStress, PointKind, Stress
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import DeflectedContour
 from bemcontact.serialization import Pair
@@ -25,7 +25,7 @@ FLAT = 1e-6
 """Angle of a corner that is none, and jump of shear over the largest traction that is none."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class BodyStress:
     """The stress of one state of a body, with the places where it is infinite.
 

@@ -1,7 +1,5 @@
 """Formulations compared under all load cases and combinations of a problem, on one mesh."""
 
-from dataclasses import dataclass
-
 from bemcontact.analysis.compare import compared_on, settings_of
 from bemcontact.analysis.load_cases import CaseResults, prepared_cases
 from bemcontact.analysis.mesh_study import LevelRecord, MeshLevel, Settings, versions
@@ -9,6 +7,7 @@ from bemcontact.analysis.solve import Progress, Stopwatch
 from bemcontact.assessment.accuracy import together
 from bemcontact.cached import cached_property
 from bemcontact.contact.record import UnitsRecord, units_record
+from bemcontact.frozen import frozen
 from bemcontact.options import ComparisonOptions
 from bemcontact.problems.problem import Problem
 from bemcontact.serialization import Record, Recorded
@@ -34,7 +33,7 @@ class CaseComparisonsRecord(Record):
     """Time of all stages."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class CaseComparisons(Recorded):
     """Formulations compared under all load cases and combinations of a problem, on one mesh.
 

@@ -1,7 +1,6 @@
 """A problem before it is solved: its mesh, its loads, and what holds the body."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from bemcontact.bem.discretization import body_of, deflections
 from bemcontact.bem.mesh import Mesh, build
 from bemcontact.bem.support import each_case, ensure_held, idle_motion
 from bemcontact.errors import ProblemError, SingularSystemError
+from bemcontact.frozen import frozen
 from bemcontact.problems import DeflectedContour, Problem
 from bemcontact.problems.boundary import size_of_edges
 from bemcontact.problems.nearest_places import nearest_places, surface_corners
@@ -24,7 +24,7 @@ INTERFERENCE = 0.01
 """Overlap of two bodies over the size of the smaller one that is noted: a strain that is hardly small."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class CheckedProblem:
     """A problem on its mesh, whose loads leave the body in place in each load case."""
 

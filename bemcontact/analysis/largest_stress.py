@@ -8,7 +8,6 @@ A maximum is below a contact if it lies at most 45 degrees beside it: near the e
 """
 
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -27,6 +26,7 @@ from bemcontact.contact.stress import (
     Stress,
     StressPeak,
 )
+from bemcontact.frozen import frozen
 
 SEARCHES, AGAIN = 8, 0.7
 """Searches at a time, and the part of a maximum from which on other starts may lead to a larger one."""
@@ -162,7 +162,7 @@ class _Ends(NamedTuple):
     inside: BoolArray
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class _Search:
     """A search for the largest maximum of a stress inside a body.
 

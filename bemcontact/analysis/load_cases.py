@@ -1,6 +1,5 @@
 """All load cases and combinations of a problem, solved on one condensation and assessed."""
 
-from dataclasses import dataclass
 from typing import Unpack
 
 from bemcontact.analysis.result import Result, ResultRecord
@@ -17,6 +16,7 @@ from bemcontact.analysis.solve import (
 from bemcontact.assessment.accuracy import together
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.starts import with_start_read
+from bemcontact.frozen import frozen
 from bemcontact.options import FormulationName, SolveOptions, SolvingKeywords, Weights
 from bemcontact.problems.problem import Problem
 from bemcontact.serialization import Record, Recorded
@@ -43,7 +43,7 @@ class CasesRecord(Record):
     """Time of each stage that they share."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class CaseResults(Recorded, Tabular):
     """The results of all load cases and combinations of a problem.
 

@@ -1,7 +1,7 @@
 """A comparison on one mesh or several, the content of a report."""
 
 import platform
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 
 from bemcontact.analysis.result import Result
@@ -11,6 +11,7 @@ from bemcontact.assessment.convergence import Convergence, convergence
 from bemcontact.assessment.penetration import Penetration
 from bemcontact.cached import cached_property
 from bemcontact.contact.record import UnitsRecord, units_record
+from bemcontact.frozen import frozen
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problems.problem import Problem
 from bemcontact.reference import Expected, Score, expected, score
@@ -100,7 +101,7 @@ class MeshStudyRecord(Record):
     """Time of all stages on all meshes."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class MeshLevel:
     """A problem on one mesh."""
 
@@ -151,7 +152,7 @@ class MeshLevel:
         )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class MeshStudy(Recorded):
     """A problem compared on one mesh or several."""
 

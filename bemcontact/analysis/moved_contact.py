@@ -1,7 +1,6 @@
 """Contact beside where its bodies and surfaces are after the motion: how far that is judged, and how it is told."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.frozen import frozen
 from bemcontact.problems.body_surface import BodySurface
 from bemcontact.problems.problem import Problem
 
@@ -46,7 +46,7 @@ def noted(problem: Problem) -> float:
     return NOTED * judged_to(problem)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class MovedContact:
     """The contact of a solution, and where the motion of this solution takes it.
 

@@ -1,7 +1,6 @@
 """The paper's problems, shipped with the package and solved again, and quantities to compare with its statements."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from importlib.resources import files
 
 import numpy as np
@@ -13,6 +12,7 @@ from bemcontact.analysis.solve import Progress
 from bemcontact.arrays import Array
 from bemcontact.contact.record import UnitsRecord
 from bemcontact.errors import SpecError
+from bemcontact.frozen import frozen
 from bemcontact.options import ComparisonOptions, FormulationName
 from bemcontact.problems import Problem, Table, Units, Values
 from bemcontact.reference.paper import PROBLEMS, PaperProblem, PaperQuantity, PaperStatement
@@ -111,7 +111,7 @@ class ReproductionRecord(Record):
     """Time of all runs."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Run:
     """A problem of the paper on one mesh."""
 
@@ -123,7 +123,7 @@ class Run:
     """The comparison on this mesh."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class PaperStudy:
     """A problem of the paper: a mesh study of the problem as stated, and one of each variant."""
 
@@ -220,7 +220,7 @@ class PaperStudy:
         )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class Reproduction(Recorded):
     """The problems of the paper, solved again."""
 

@@ -1,6 +1,6 @@
 """The result of a contact problem: its solution and all quantities recomputed from it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,6 +34,7 @@ from bemcontact.contact.record import (
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.contact.stress import EdgeStress, Labels, LargestStresses, Stress, TriangulatedBody
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen
 from bemcontact.options import FormulationName, Weights
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.units import Units
@@ -117,7 +118,7 @@ class ResultRecord(FootprintRecord, SolutionRecord, ContactRecord, HeadRecord):
     condensation of another one."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class Result(Recorded, Tabular):
     """A solution of a contact problem and all quantities recomputed from it."""
 
@@ -215,8 +216,8 @@ class Result(Recorded, Tabular):
     def rotations(self) -> Array | None:
         """Angle (k,) of each free motion, in radians and in the sense of its name; zero in a translation.
 
-        Not a number for `unknown_motions`; None for a condensed problem of elastic bodies that touch. That of a body
-        that touches elastic ones is the mean rotation of its boundary.
+        Not a number for a rotation among `unknown_motions`; None for a condensed problem of elastic bodies that touch.
+        That of a body that touches elastic ones is the mean rotation of its boundary.
         """
         return self.known_motions.rotations
 

@@ -4,7 +4,6 @@ The change is the error of the first solution, to first order.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.assessment.footprint import footprint
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.frozen import frozen
 from bemcontact.problems.problem import Problem
 
 SMALL_COMPONENT = 0.15
@@ -33,7 +33,7 @@ ALIKE = 0.1
 """Relative difference of what changes at two contacts up to which the mesh decides it: the first one is named."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class SecondSolution:
     """A second solution beside the first one.
 

@@ -5,7 +5,7 @@ change little by accident. So the bar is floored by the change of the stress aro
 pressure.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from bemcontact.arrays import Array, magnitudes
 from bemcontact.assessment.accuracy import Accuracy
 from bemcontact.contact.stress import LargestStresses, Stress, StressPeak
 from bemcontact.errors import ProblemError, SingularSystemError, SolverError
+from bemcontact.frozen import frozen
 from bemcontact.problems.problem import Problem
 from bemcontact.serialization import Pair
 
@@ -72,7 +73,7 @@ def _on_mesh(problem: Problem, infinite: list[Pair]) -> StressOfBodies:
     return StressOfBodies.of(problem, answer.state, answer.pressure[:, :, 1] > 0, infinite)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class _Pair:
     """The stress on two meshes.
 

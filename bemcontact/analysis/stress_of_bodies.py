@@ -1,7 +1,7 @@
 """Stress and displacement of one state of all elastic bodies of a problem."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Self
 
 import numpy as np
@@ -26,12 +26,13 @@ from bemcontact.contact.stress import (
     TriangulatedBody,
 )
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.wording import unknown_word
 from bemcontact.serialization import Pair
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class StressOfBodies:
     """The stress of each elastic body, in one state.
 

@@ -1,7 +1,7 @@
 """Error bars of a result, and whether they are as small as was asked."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf
 from typing import ClassVar, Literal, Self, get_args
 
@@ -9,6 +9,7 @@ from pydantic import computed_field
 
 from bemcontact.checks.attributes import ERROR, PEAK, PLACE, Words
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen_value
 from bemcontact.serialization import Leaf, Pair
 
 Quantity = Literal[
@@ -19,7 +20,7 @@ TOLD: tuple[Quantity, ...] = ("length", "intensity", "motion", "rotation")
 """Quantities that are told with their error bars, and to which the accuracy asked for does not apply."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class ErrorBar(Leaf):
     """A quantity with its estimated error."""
 
@@ -77,7 +78,7 @@ class ErrorBar(Leaf):
         return self.quantity not in TOLD and not (self.bar is None and nothing)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Accuracy(Leaf):
     """Accuracy that was asked for, and what was reached."""
 

@@ -32,7 +32,6 @@ Where λ is not positive, `uniqueness` may still exclude all states outside of a
 weights. Inside it there may be more than one.
 """
 
-from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -46,6 +45,7 @@ from bemcontact.assessment.reweighting import reweighted_bound
 from bemcontact.assessment.uniqueness import NearState, effective_eigenvalue, near_bound
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.frozen import frozen_value
 from bemcontact.options import FormulationName
 from bemcontact.serialization import Leaf
 
@@ -83,7 +83,7 @@ POSITION_OPEN_HEADING = "unique pressures proved, position not determined"
 WITHIN_BOUND_HEADING = "unique within the error bound"
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Certificate(Leaf):
     """What is proved of a solution from its pressures and displacements alone, without trust in the solver."""
 

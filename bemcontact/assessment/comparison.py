@@ -4,7 +4,6 @@ The direct solution of the complementarity problem is the reference; it has no o
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
@@ -25,6 +24,7 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.known_motions import KnownMotions
 from bemcontact.contact.record import ContactRecord, contact_record
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.frozen import frozen, frozen_value
 from bemcontact.options import Weights
 from bemcontact.serialization import Leaf, Record, Recorded
 from bemcontact.version import __version__
@@ -38,7 +38,7 @@ MANY = 4
 """Number of contenders above which those that agree are counted and not named."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Difference(Leaf):
     """Difference of the pressures of two contenders."""
 
@@ -90,7 +90,7 @@ class ComparisonRecord(Record):
     """Numbers that decide which formulations are convex."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class Comparison(Recorded, Tabular):
     """Formulations of one condensed problem side by side."""
 

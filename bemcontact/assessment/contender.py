@@ -1,7 +1,6 @@
 """One formulation in a comparison: its attempt, the assessment of its solution, and the verdict on it."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
 from bemcontact.assessment.certificate import Certificate, CertificateKind, certify
@@ -13,6 +12,7 @@ from bemcontact.contact.known_motions import KnownMotions
 from bemcontact.contact.multistart import RandomStarts
 from bemcontact.contact.record import SolutionRecord, solution_record
 from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.frozen import frozen, frozen_value
 from bemcontact.options import FormulationName, SolveOptions, Weights
 from bemcontact.serialization import Leaf, Record
 
@@ -63,7 +63,7 @@ OF_DIRECT = {
 """What is said of the direct solution."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Conclusion(Leaf):
     """Whether a solution is the contact state, and why."""
 
@@ -166,7 +166,7 @@ def _of_weights(matrices: WeightedCompliance, tributary: WeightedCompliance) -> 
     return "; ".join(parts)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Attempt:
     """One formulation's attempt at a contact problem."""
 
@@ -184,7 +184,7 @@ class Attempt:
     """Ends of searches from random starts, if there were any."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Assessment:
     """Everything that is recomputed of a solution."""
 
@@ -204,7 +204,7 @@ class Assessment:
     """Peak pressure over T."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Contender:
     """One formulation in a comparison."""
 

@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Literal
 
 import scipy
 
 from bemcontact.assessment.footprint import ContactInterval, Footprint
+from bemcontact.frozen import frozen_value
 from bemcontact.serialization import Leaf
 
 ORDERS = 0.05, 12.0
@@ -16,7 +16,7 @@ ROUND_OFF = 1e-9
 """Change relative to the value below which it is due to round-off and not to the mesh."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Quantity(Leaf):
     """A number on one mesh after the other."""
 
@@ -35,7 +35,7 @@ class Quantity(Leaf):
     """Limit extrapolated with the last order; null without an order."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Convergence(Leaf):
     """Change of the solution with the mesh."""
 

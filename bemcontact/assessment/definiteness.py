@@ -1,12 +1,12 @@
 """Definiteness of S sym(DM) S on the equilibrium space, S diagonal; `certificate` says what follows from it."""
 
-from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
 from scipy.linalg import get_lapack_funcs, solve_triangular
 
 from bemcontact.arrays import Array, norm, row_norms, short_svd
+from bemcontact.frozen import frozen
 
 geqrf, ormqr, syevr, syevr_lwork = get_lapack_funcs(("geqrf", "ormqr", "syevr", "syevr_lwork"), dtype=float)
 EPS = float(np.finfo(float).eps)
@@ -17,7 +17,7 @@ SURE = 1.0 + 1e-6
 """Factor of a bound by triangular factors: more than their round-off."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Definiteness:
     """λ of S sym(DM) S on the equilibrium space, None if there is none, and what is left of it less round-off."""
 

@@ -5,7 +5,6 @@ holds it, the terms are far larger than δ. Then they are added without rounding
 units are powers of two, and what rounding takes from q = ε + Δ1 and ℓ = J R is added too.
 """
 
-from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
@@ -25,6 +24,7 @@ from bemcontact.arrays import (
 )
 from bemcontact.assessment.definiteness import EPS
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.frozen import frozen
 
 KNOWN = 1e-6
 """Relative accuracy that is demanded of a step to equilibrium."""
@@ -35,7 +35,7 @@ SAFE = 2.0
 """Factor of what linear programs say of pressures: more than they can be off."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class ContactEquations:
     """δ = q + M y + R a with weights D, and ℓᵀy = -load, in units of a gap and a pressure.
 

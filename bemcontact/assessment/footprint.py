@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from itertools import pairwise
 from typing import ClassVar, NamedTuple, Self
 
@@ -16,6 +16,7 @@ from bemcontact.contact.condensed_contact import PEAK as LEAST_PEAK
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.load_cases import BALANCED
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.frozen import frozen, frozen_value
 from bemcontact.serialization import Internal, Leaf, Pair, Record
 
 OPEN_NODES = 3
@@ -23,7 +24,7 @@ EQUAL = 1e-9
 """Difference from the largest pressure, over that, which is round-off: the peak is at the first point of those."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Peak(Leaf):
     """The largest pressure, and where it acts."""
 
@@ -35,7 +36,7 @@ class Peak(Leaf):
     """Contact point (x, y) [L]; the first of them where the pressure is the same at several."""
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
+@frozen_value
 class ContactInterval(Leaf):
     """One unbroken stretch of contact along the boundary."""
 
@@ -85,7 +86,7 @@ class ContactInterval(Leaf):
         return self.end_arc - self.start_arc
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Resultant(WithHints):
     """Force of the rigid surfaces on the body; of several bodies the sum over all contacts, which acts on no body."""
 
@@ -103,7 +104,7 @@ class Resultant(WithHints):
     """Point of the line of action that is nearest to the origin [L]; None if the contact forces balance each other."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Footprint(WithHints):
     """Where the body touches, and how hard."""
 
@@ -229,7 +230,7 @@ class _LoadOnPoints(NamedTuple):
         return Peak(pressure=pressure, at=(x, y)) if pressure > LEAST_PEAK * self.contact.scales.pressure else None
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class _Path:
     """The points of one run in order, gap cut off below zero; a closed run three times over.
 

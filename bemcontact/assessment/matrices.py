@@ -1,12 +1,11 @@
 """Asymmetry, definiteness and condition of the condensed matrices, which decide what can be proved."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from pydantic import computed_field
 from scipy.linalg import eigvalsh
 
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.frozen import frozen_value
 from bemcontact.options import Weights
 from bemcontact.serialization import Leaf
 
@@ -14,7 +13,7 @@ NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR, or part of the largest eigenvalue, that is round-off; by the scaling the numbers are of size one."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class WeightedCompliance(Leaf):
     """Numbers of J M on the equilibrium space {p : ℓᵀp = 0}; J is over its largest entry and ‖M‖∞ = 1."""
 

@@ -3,10 +3,10 @@
 The deformed boundary may penetrate a rigid surface, itself or another body anywhere, or displacements are not small.
 """
 
-from dataclasses import dataclass
 from enum import StrEnum
 
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.frozen import frozen_value
 from bemcontact.serialization import Leaf, Pair
 
 TOLERATED = 0.01
@@ -31,7 +31,7 @@ class Misfit(StrEnum):
         return self is not Misfit.NOT_SMALL
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Penetration(Leaf):
     """Where the deformed boundary does not fit a rigid surface, beyond what the discretization explains.
 

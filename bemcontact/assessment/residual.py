@@ -5,19 +5,18 @@ objectives are not zero there. An objective below that of another solution says 
 violated: read it beside the residuals.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from bemcontact.arrays import Array, least_squares
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.lu import LU
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.frozen import frozen_value
 from bemcontact.options import Weights
 from bemcontact.serialization import Leaf
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Residuals(Leaf):
     """Residuals of (12) and (16)-(18), recomputed, over the scales of displacement U and pressure T.
 
@@ -104,7 +103,7 @@ def _largest(values: Array) -> float:
     return float(values.max(initial=0.0))
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class PenaltyObjective(Leaf):
     """Objective of QP2 with one penalty."""
 
@@ -114,7 +113,7 @@ class PenaltyObjective(Leaf):
     """F2 = F1 + (1/μ)|K u_n - B p - r|², (30), scaled."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Objectives(Leaf):
     """Objectives of one solution under every statement, over U T max|J|, the scales and the weights.
 

@@ -36,8 +36,6 @@ which null vectors of K set against each other. With b = max(K'y, -Dq) and p* >=
 a bound of |e| <= |v| + η that takes the place of B, and so on: in the end little more than |s|/λ is left.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 import scipy
 from scipy.linalg import eigh
@@ -45,6 +43,7 @@ from scipy.linalg import eigh
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.definiteness import EPS, SURE, Definiteness, least_eigenvalue
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 
 MOST = 8
 """Eigenvectors with which a proof is tried."""
@@ -62,7 +61,7 @@ LEAST_REST = 0.05
 """Value of the bracket that is demanded: more than the linear programs can be off."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class NearState:
     """A pressure near the contact state in scaled numbers, on all points that may be in contact.
 

@@ -1,7 +1,7 @@
 """A problem on its mesh, before it is condensed: loadings, contact points, and the motions that contact holds."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.cached import cached_property
 from bemcontact.contact.free_motions import MotionAlgebra
 from bemcontact.contact.load_cases import BALANCED, Pinned
+from bemcontact.frozen import frozen
 from bemcontact.problems.bodies import Part
 from bemcontact.problems.body_surface import BodyZone
 from bemcontact.problems.material import Material
@@ -34,7 +35,7 @@ OF_ALL_CASES = ("unit_pressures", "shear_moduli", "pinned_motions", "pinned", "s
 """Properties of a body that do not depend on the load case that acts."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Body:
     """A problem on its mesh, before it is condensed: boundary values, contact points, rigid motions.
 

@@ -12,7 +12,6 @@ those of the stiffer side more than its own, miss its center by a little, and co
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -22,10 +21,11 @@ from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import SMOOTH
 from bemcontact.bem.mesh import Mesh, MeshPart
 from bemcontact.bem.unit_pressures import UnitPressures
+from bemcontact.frozen import frozen
 from bemcontact.problems.problem import Problem
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class BondedPoints:
     """What does not move, b components in all: one node beside another along an axis, or a body that might spin.
 

@@ -17,7 +17,7 @@ displacement has no error of collocation, and worse elsewhere: this error change
 Lengths are over L0, and stresses over the shear modulus, as in `influence`.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -25,6 +25,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, ComplexArray, IntArray
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
+from bemcontact.frozen import frozen
 from bemcontact.problems.material import Material
 
 STARTS, ENDS = 0, 2
@@ -46,7 +47,7 @@ class Gradient(NamedTuple):
         return np.stack([mean + difference.real, mean - difference.real, difference.imag])
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class BoundaryFields:
     """Displacement, its derivative, and traction on the boundary, of q states at a time.
 

@@ -1,7 +1,6 @@
 """What conditions prescribe on the boundary, and the state of the boundary in a solution."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -10,6 +9,7 @@ from bemcontact.arrays import Array, BoolArray, IntArray, indices
 from bemcontact.bem.mesh import Mesh, MeshPart
 from bemcontact.checks.attributes import PLACE, WithHints, Words
 from bemcontact.errors import Issue, ProblemError
+from bemcontact.frozen import frozen
 from bemcontact.problems.conditions import Along, AxisFields, Condition, Field
 from bemcontact.problems.problem import Problem
 
@@ -19,7 +19,7 @@ STOP = 1e-9
 """Distance over the length of an edge up to which an element ends at a jump of a load: round-off."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class BoundaryValues:
     """Prescribed displacements and tractions on the boundary; zero where nothing is prescribed.
 
@@ -55,7 +55,7 @@ class BoundaryValues:
         return -np.einsum("mkij,mkj->mki", self.stiffness, displacement)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class BoundaryState(WithHints):
     """Displacement and traction on the boundary, element by element; traction may jump between elements."""
 

@@ -5,7 +5,7 @@ equilibrium is exact: ℓ = J R, and the load is the work of the applied loads i
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import zip_longest
 
 import numpy as np
@@ -27,11 +27,12 @@ from bemcontact.bem.system import System
 from bemcontact.contact.condensed_contact import CondensedContact, computed_contact
 from bemcontact.contact.free_motions import Gauge, fix_gauge
 from bemcontact.contact.load_cases import LoadCases, Tools
+from bemcontact.frozen import frozen
 from bemcontact.problems.curves import cross
 from bemcontact.problems.problem import Problem
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class CondensedPart:
     """One elastic body, condensed by itself, or by the factors of a body that it is congruent to.
 
@@ -64,7 +65,7 @@ class CondensedPart:
         return displacement @ self.turn.T, traction @ self.turn.T
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Condensation:
     """Condensed bodies, with the responses from which the whole boundary follows for a pressure.
 
@@ -121,7 +122,7 @@ def condense(body: Body) -> Condensation:
     return condense_together([body])[0]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class CondensedTogether:
     """Bodies that differ in gaps, loads and tools only, condensed by one factorization of their common matrix.
 

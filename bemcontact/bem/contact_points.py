@@ -1,7 +1,7 @@
 """The contact points of a mesh: pairs (zone, node) with their gaps, normals and weights."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -12,6 +12,7 @@ from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 
 ALIKE = 1e-9
 """Difference of two normals, or of two gaps over the size of the body, at one node that counts as none."""
@@ -48,7 +49,7 @@ class HeldNodes(NamedTuple):
     gap: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class ContactPoints:
     """Candidates for contact, zone by zone, run by run, along the boundary.
 

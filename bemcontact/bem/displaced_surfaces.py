@@ -1,7 +1,6 @@
 """Surfaces that bodies may touch, after tools and elastic bodies have displaced them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,6 +9,7 @@ from bemcontact.bem import reference_element
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.outline import Outline
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 from bemcontact.problems.body_surface import AnyShape, BodySurface
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import DeflectedContour
@@ -20,7 +20,7 @@ CHUNK = 8192
 """Number of places whose distance from a surface is computed at a time."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class DisplacedSurfaces:
     """The surfaces of a problem by zone, with their displacement.
 

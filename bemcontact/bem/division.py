@@ -5,7 +5,6 @@ normal, which has a node there. So the elements of the second body end at the pa
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -13,6 +12,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.errors import Issue, ProblemError
+from bemcontact.frozen import frozen
 from bemcontact.problems.body_surface import BodySurface
 from bemcontact.problems.curves import Edge
 from bemcontact.problems.pairing import HALF, OppositePart
@@ -37,7 +37,7 @@ class Facing(NamedTuple):
     opposite: int
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Division:
     """All elements of a problem.
 

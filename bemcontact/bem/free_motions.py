@@ -1,7 +1,7 @@
 """Motions in which bodies and tools move rigidly together: those that contact sees, the others, and their names."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Self
 
 import numpy as np
@@ -12,6 +12,7 @@ from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions, echelon
 from bemcontact.bem.unit_pressures import UnitPressures
+from bemcontact.frozen import frozen
 from bemcontact.problems.contact_zone import ToolAction
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.rigid_surface import DeflectedContour
@@ -29,7 +30,7 @@ BODY = "the body"
 """Name of an only body in sentences."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class PlacedTools:
     """t tools with their contact points; components are x, y and rotation, tool by tool.
 
@@ -114,7 +115,7 @@ def steps_of_surfaces(problem: Problem) -> Array:
     return np.array([(0.0, 0.0) if isinstance(it, DeflectedContour) else it.way[:2] for it in surfaces]).reshape(-1, 2)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class FreeMotions:
     """k motions in which b elastic bodies and t tools move rigidly together.
 

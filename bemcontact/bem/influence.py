@@ -10,7 +10,7 @@ Stresses are divided by the shear modulus.
 
 import itertools
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +22,7 @@ from bemcontact.bem.kernels import GaussRule
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.skeleton import RATIO, disc, skeleton
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 from bemcontact.threads import one_thread, share_out
 
 ROWS_PER_BLOCK = 160
@@ -35,7 +36,7 @@ SHARED_RULE_RHO = 4.0
 """Bernstein parameter from which the elements that are far from a block of points share a rule."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Collocation:
     """Points z at which the displacement equation is written, and their places on elements.
 
@@ -65,7 +66,7 @@ class Collocation:
         return self.base + self.offset
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class InfluenceRows:
     """Some rows of F and G: the x and y equations of the R collocation points `rows`, which the last axis counts.
 
@@ -91,7 +92,7 @@ class _Space(NamedTuple):
     G: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Influence:
     """The boundary of a body as a source of displacement at collocation points.
 

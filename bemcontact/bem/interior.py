@@ -1,7 +1,7 @@
 """Displacement gradient and displacement inside a body, from the fields on its boundary."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +15,7 @@ from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.reference_element import RHO_OF_T
 from bemcontact.bem.symmetry import SymmetryLine
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 
 PAIRS = 16_000
 """Pairs of a point and an element at a time: about ten arrays of them stay in the second-level cache."""
@@ -35,7 +36,7 @@ class Nearest(NamedTuple):
     inside: BoolArray
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Interior:
     """Points inside and around the boundary of a body, for the integrals of `gradient_kernels` over it.
 

@@ -6,7 +6,7 @@ effective one.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from bemcontact.bem.boundary_values import BoundaryValues, applied_traction, bou
 from bemcontact.bem.free_motions import FreeMotions
 from bemcontact.bem.mesh import Mesh, MeshPart, along_curve
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen
 from bemcontact.problems.bodies import Part
 from bemcontact.problems.conditions import AxisFields, Centrifugal, Condition, Field, Gravity, Loads, Temperature
 from bemcontact.problems.curves import Edge
@@ -28,7 +29,7 @@ EXACT_ORDER = 2
 """Gauss points that integrate x dy exactly along a quadratic element."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class ParticularSolution:
     """A field in equilibrium with the volume loads, on a mesh.
 
@@ -165,7 +166,7 @@ def _area(mesh: Mesh) -> float:
     return float(np.einsum("mg,g->", flux, weights)) / 2
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Loading:
     """Values on the boundary and loads on the volume; loadings of one body prescribe values at the same places.
 

@@ -2,7 +2,6 @@
 
 import dataclasses
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -12,6 +11,7 @@ from bemcontact.arrays import Array, BoolArray, IntArray, indices, magnitudes, s
 from bemcontact.bem import reference_element
 from bemcontact.bem.division import Facing, divided
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 from bemcontact.problems.conditions import Along
 from bemcontact.problems.curves import Edge
 from bemcontact.problems.problem import Problem
@@ -26,7 +26,7 @@ CORNER = 0.2
 """Angle [rad], or its sine, by which the boundary turns from which it has a corner."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Mesh:
     """Elements with three nodes on closed loops; the body is on the left.
 

@@ -2,7 +2,6 @@
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -12,6 +11,7 @@ from bemcontact.arrays import Array, BoolArray, IntArray, indices
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 from bemcontact.problems.body_surface import AnyShape, AnySurface, BodySurface
 from bemcontact.problems.curves import Edge
 from bemcontact.problems.nearest_places import nearest_places, surface_corners
@@ -46,7 +46,7 @@ class Places(NamedTuple):
     inward: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Outline:
     """The curves of the edges under the elements of a mesh; places of samples and their faces are computed once."""
 

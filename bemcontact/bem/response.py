@@ -8,7 +8,7 @@ than round-off are all pressures refined, and the condition of A is looked at: t
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Self
 
 import numpy as np
@@ -17,6 +17,7 @@ from bemcontact.arrays import Array, IntArray
 from bemcontact.cached import cached_property
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
+from bemcontact.frozen import frozen
 
 SINGULAR = 1e-15
 """Reciprocal condition number below which the system counts as singular."""
@@ -26,7 +27,7 @@ GOLDEN = 0.6180339887498949
 """Its multiples are spread evenly over the fractions, so that signs which follow them have no period."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Response:
     """Solutions X (size, c) of A X = B for loads and unit pressures.
 

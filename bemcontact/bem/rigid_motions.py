@@ -1,6 +1,5 @@
 """Rigid motions of one body, those that no condition prevents, and their names."""
 
-from dataclasses import dataclass
 from functools import partial
 from itertools import compress
 from math import hypot
@@ -13,6 +12,7 @@ from bemcontact.bem.boundary_values import BoundaryValues
 from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.unit_pressures import UnitPressures
+from bemcontact.frozen import frozen
 
 HELD = 1e-9
 """Singular value, relative to one, below which the prescribed displacements do not hold a motion."""
@@ -30,7 +30,7 @@ FAR = 3.0
 motions differ by no more than a third from that of the middle."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class RigidMotions:
     """k rigid motions u(x) = (a - c y', b + c x'), (x', y') = (x - center)/radius.
 

@@ -1,7 +1,6 @@
 """Stress and displacement at any point of a body, inside and on its boundary, of several states at a time."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -15,6 +14,7 @@ from bemcontact.bem.mesh import CORNER, Mesh
 from bemcontact.bem.outline import ROUGH, Outline
 from bemcontact.bem.symmetry import SymmetryLine, symmetry_lines
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 from bemcontact.problems.conditions import Loads
 from bemcontact.problems.material import Material
 from bemcontact.problems.nearest_places import surface_corners
@@ -79,7 +79,7 @@ def _conditions(problem: Problem, edge: str) -> tuple[object, ...]:
     return problem.edge_conditions.get(edge), [case.conditions.get(edge) for case in problem.load_cases.values()], zones
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class StressField:
     """Stress and displacement in a body in q states, each with volume loads of its own.
 

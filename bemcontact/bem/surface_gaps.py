@@ -5,7 +5,6 @@ that of the elements.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import permutations
 from typing import NamedTuple
 
@@ -21,6 +20,7 @@ from bemcontact.bem.outline import NODES
 from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.frozen import frozen
 from bemcontact.problems.body_surface import AnyShape, BodySurface
 from bemcontact.problems.curves import cross
 from bemcontact.problems.surface_lines import Closest, Faces, Polyline, Spline
@@ -120,7 +120,7 @@ class Intrusion(NamedTuple):
     ends: tuple[tuple[FaceEnd, float], ...]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class SurfaceGaps(DisplacedSurfaces):
     """The deformed boundary of a body beside the displaced surfaces; parameters are those of these."""
 

@@ -8,7 +8,7 @@ In this module lengths are divided by L0 and stresses by the shear modulus (see 
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from importlib import import_module
 from typing import NamedTuple
@@ -26,6 +26,7 @@ from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 from bemcontact.problems.material import Material
 
 AXES = np.eye(2)
@@ -55,7 +56,7 @@ def machine_code() -> MachineCode | None:
         return None
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Unknowns:
     """Columns of the system: x displacements, y displacements, then tractions.
 
@@ -98,7 +99,7 @@ def _continues_straight(mesh: Mesh) -> BoolArray:
     return (mesh.edge == mesh.edge[mesh.before]) & (abs(mesh.turns) < STRAIGHT)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class SystemEquations:
     """Rows of the system: x equations of the collocation points, then y equations.
 
@@ -178,7 +179,7 @@ class SystemRows(NamedTuple):
     right: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class System:
     """The equations of a body, A z + W s = b + Σ_i p_i b_i and Vᵀ z = 0.
 

@@ -1,13 +1,12 @@
 """Triangles that fill the body, for pictures and files of what happens inside; nothing is computed with them."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.spatial import Delaunay, KDTree
 
 from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.bem import reference_element
 from bemcontact.bem.mesh import Mesh
+from bemcontact.frozen import frozen
 
 PIECES = 2
 """Pieces into which each element is cut at first."""
@@ -23,7 +22,7 @@ FLAT = 1e-6
 """Height of a triangle over its longest side below which it is left out: its corners lie on one straight edge."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Triangulation:
     """Triangles that fill the body; the first b points lie on the boundary.
 
@@ -40,7 +39,7 @@ class Triangulation:
     xi: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class _Pieces:
     """Pieces of boundary: element (b,), local coordinates (b, 2) of both ends, and the piece (b,) that follows."""
 

@@ -1,14 +1,15 @@
 """Unit pressures on the mesh of one body, and the displacements that change gaps."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Self
 
 import numpy as np
 
 from bemcontact.arrays import Array, IntArray
+from bemcontact.frozen import frozen
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class UnitPressures:
     """Where unit pressures act on the mesh of one body, and where their displacement counts.
 

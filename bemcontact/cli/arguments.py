@@ -5,7 +5,6 @@ import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from difflib import get_close_matches
 from enum import StrEnum
 from math import isfinite
@@ -16,6 +15,7 @@ import typer
 
 from bemcontact.cached import cached_property
 from bemcontact.errors import KeyPath, OptionError, ProblemError, SpecError, escaped
+from bemcontact.frozen import frozen_value
 from bemcontact.options import EXPECTED_ACCURACY, ComparisonOptions, SolveOptions, StartName
 
 Number = TypeVar("Number", int, float)
@@ -85,7 +85,7 @@ JsonOption = Annotated[
 ]
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Source:
     """The spec that a command reads, with the changes made to it on the command line."""
 

@@ -4,7 +4,7 @@ import gc
 import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from functools import wraps
 from pathlib import Path
 from typing import Annotated, Any, NoReturn, get_type_hints
@@ -26,6 +26,7 @@ from bemcontact.cli.terminal import (
 )
 from bemcontact.errors import BemContactError, NotConvexError, OptionError, ProblemError, SpecError, escaped
 from bemcontact.files import output
+from bemcontact.frozen import frozen_value
 from bemcontact.options import MEANT, SolveOptions
 
 UNCERTIFIED, BAD_INPUT, INTERRUPTED = 1, 2, 130
@@ -151,7 +152,7 @@ def modules() -> Iterator[bool]:
         gc.enable()
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class CommandOutput:
     """Output of a command: table, JSON, exit status, and the reason of a status that is not 0."""
 

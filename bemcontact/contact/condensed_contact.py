@@ -6,7 +6,7 @@ Lengths and stresses are in the user's units.
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, Self
 
 import numpy as np
@@ -34,6 +34,7 @@ from bemcontact.contact.free_motions import (
 )
 from bemcontact.contact.load_cases import Change, LoadCases, Pinned, Tools
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen
 from bemcontact.options import Weights, named
 
 CANCELLED = 64 * float(np.finfo(float).eps)
@@ -44,7 +45,7 @@ PEAK = 1e-12
 """Fraction of T below which the largest pressure is round-off, so that nothing touches."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class CondensedContact(WithHints, MotionAlgebra):
     """An elastic body condensed to its n contact points: u_n = Δ1 + M p + R a with ℓᵀp = -load, [SS92] (35)-(38).
 

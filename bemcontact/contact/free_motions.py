@@ -1,6 +1,5 @@
 """Algebra of the free rigid motions: scales, equilibrium ℓᵀp = -load with ℓ = J R, the gauge, the stiffness rows."""
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +8,7 @@ import scipy
 from bemcontact.arrays import Array, BoolArray, least_squares, nonnegative_residual, real_array, short_svd
 from bemcontact.cached import cached_property
 from bemcontact.errors import ProblemError, SingularSystemError
+from bemcontact.frozen import frozen
 
 INTERFERENCE = 1e-6
 """Fraction of the largest gap from which there is interference: the accuracy of a linear program."""
@@ -116,7 +116,7 @@ def unseen_ways(changes: Array, part: float) -> Array:
     return vectors[values <= part * values[:1]].T
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class MotionAlgebra:
     """Free rigid motions of n contact points, with the equilibrium ℓᵀp = -load.
 

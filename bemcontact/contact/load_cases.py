@@ -4,7 +4,6 @@ Their factors, displacements and forces enter the gap without contact, q = ε + 
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import NamedTuple, Self
 
@@ -13,6 +12,7 @@ import numpy as np
 from bemcontact.arrays import Array, BoolArray, flag_array, freeze_arrays, read_arrays
 from bemcontact.checks.arguments import labels, real_number, visible_texts
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen
 
 BALANCED = 1e-9
 """Work of a load in a motion, relative to the sum of the magnitudes of all loads, that counts as zero."""
@@ -31,7 +31,7 @@ class Change(NamedTuple):
     motion_load: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class LoadCases:
     """c load cases, each as it acts alone, and their factors.
 
@@ -81,7 +81,7 @@ class LoadCases:
         return [*map(len, parts)] == [points, motions, 3 * tools, 3 * tools]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Tools:
     """t tools: rigid surfaces with given displacements, or with given forces and unknown displacements.
 
@@ -148,7 +148,7 @@ class Tools:
         return tuple(f"tools.{name}.{(forces if free[i] else moves)[i]}" for free, name in ways for i in range(3))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Pinned:
     """j rigid motions of the body and of tools that move no contact point: all loads must balance in them.
 

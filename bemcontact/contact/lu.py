@@ -1,20 +1,20 @@
 """LU factorization with partial pivoting, an estimate of the condition, and one step of iterative refinement."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, Self
 
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
 from bemcontact.arrays import Array, IntArray
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 from bemcontact.threads import one_thread
 
 lange, getrf, gecon, getrs, laswp = get_lapack_funcs(("lange", "getrf", "gecon", "getrs", "laswp"), dtype=float)
 trsm: Any = get_blas_funcs("trsm", dtype=float)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class LU:
     """Factors of a square matrix A = P⁻¹ L U.
 

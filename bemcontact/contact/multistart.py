@@ -1,10 +1,9 @@
 """Ends of the searches of a local solver from many random starts (multistart), and how often each was reached."""
 
-from dataclasses import dataclass
-
 from pydantic import computed_field
 
 from bemcontact.contact.solution import ContactSolution, Status
+from bemcontact.frozen import frozen
 from bemcontact.options import FormulationName
 from bemcontact.serialization import Internal, Leaf, Vector
 
@@ -12,7 +11,7 @@ LISTED = 8
 """Ends that are listed for a person."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class SearchEnd(Leaf):
     """One end that searches from random starts reached."""
 
@@ -59,7 +58,7 @@ class SearchEnd(Leaf):
         return f"{self.count} x {self.status.replace('_', ' ')}, {where}{iterations}"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class RandomStarts(Leaf):
     """Searches of a local solver from random starts."""
 

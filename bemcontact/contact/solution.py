@@ -1,12 +1,12 @@
 """A solution of a condensed contact problem as a formulation reports it, and how its solver ended."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Literal
 
 from bemcontact.arrays import Array, freeze_arrays
 from bemcontact.checks.attributes import WithHints
+from bemcontact.frozen import frozen, frozen_value
 from bemcontact.serialization import Leaf
 
 
@@ -41,7 +41,7 @@ Inertia = tuple[int, int, int]
 """Numbers of positive, zero and negative eigenvalues."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Penalty(Leaf):
     """The penalty μ of QP2, and the largest one for which QP2 is convex.
 
@@ -65,7 +65,7 @@ class Penalty(Leaf):
         return self.convexity_limit is None or self.value <= self.convexity_limit * (1 + 1e-9)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class LocalSearch(Leaf):
     """How a local solver ended; an inertia is the numbers of positive, zero and negative eigenvalues."""
 
@@ -91,7 +91,7 @@ class LocalSearch(Leaf):
     """Penalty of QP2, or null."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Trace(Leaf):
     """One quantity, iteration by iteration, free of units."""
 
@@ -114,7 +114,7 @@ def traces_in_turn(*parts: tuple[str, Sequence[float]]) -> tuple[Trace, ...]:
     return tuple(traces)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class ContactSolution(WithHints):
     """A solution as a formulation reports it; ``bemcontact.assessment`` recomputes whether it is one.
 

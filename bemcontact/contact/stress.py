@@ -1,7 +1,7 @@
 """Stress at points of a body, along its edges and all over it, what is derived from its components, and its peaks."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from typing import ClassVar
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from bemcontact.arrays import Array, IntArray
 from bemcontact.cached import cached_property
 from bemcontact.checks.attributes import PLACE, WithHints, Words
+from bemcontact.frozen import frozen, frozen_value
 from bemcontact.options import StressMeasure
 
 
@@ -26,7 +27,7 @@ class PointKind(StrEnum):
     """At a corner, an end of contact or a change of conditions where stress is infinite: not a number."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Labels:
     """Labels of the units of stresses and their places, for what is printed; empty if they are not known."""
 
@@ -40,7 +41,7 @@ PRINTED = 6
 """Most points of which stresses are printed."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class Stress(WithHints):
     """Stress at k points of a body; tension is positive."""
 
@@ -119,7 +120,7 @@ class Stress(WithHints):
         return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy * xy)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class EdgeStress(WithHints):
     """Stress along an edge, at the three nodes of each of its m elements; where elements meet, from either side."""
 
@@ -164,7 +165,7 @@ class EdgeStress(WithHints):
         return f"<EdgeStress of {self.edge!r}: {_counted(len(self.arc), 'element')}, {peak}{infinite}>"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class StressPeak(WithHints):
     """A largest stress and its place."""
 
@@ -197,7 +198,7 @@ SHEAR_BELOW, INSIDE, ON_BOUNDARY = "shear below {}", "von Mises, inside", "von M
 """What the largest stresses are of; the first with the name of a zone."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class LargestStresses(WithHints):
     """The largest stresses of a body."""
 
@@ -258,7 +259,7 @@ def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
     return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class TriangulatedBody(WithHints):
     """Displacement and stress on triangles that fill the undeformed body: for pictures and files.
 

@@ -1,7 +1,5 @@
 """Stress at points of a body as a linear function of contact pressures and rigid amplitudes: plain arrays."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -9,12 +7,13 @@ from bemcontact.arrays import Array, real_array
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.stress import Stress
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen
 
 SAME = 1e-10
 """Relative difference of arrays that is round-off of two condensations of one mesh."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class StressOperator:
     """σ = S_p p + S_a a + s_0 at k points, with s_0 = Σ_j f_j s_j over the loadings.
 

@@ -5,8 +5,6 @@ min(p, δ) = 0 (Hintermüller, Ito and Kunisch, SIAM J. Optim. 13(3), 2002, 865-
 handful of steps on contact problems, but it may cycle.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 import scipy
 
@@ -16,6 +14,7 @@ from bemcontact.contact.load_cases import Change
 from bemcontact.contact.lu import LU
 from bemcontact.errors import SingularSystemError
 from bemcontact.formulations.scaling import ScaledContact
+from bemcontact.frozen import frozen
 
 EPS = float(np.finfo(float).eps)
 ESTIMATED = 100.0
@@ -28,7 +27,7 @@ SETTLED = 1e-14
 """Residual of `ScaledContact.residual` that no further step can lower."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class ContactBlock:
     """The equations of contact: δ = 0 on points A, p = 0 elsewhere, ℓᵀp = -load; factorized once.
 
@@ -109,7 +108,7 @@ class ContactBlock:
         return pressure, gap, amplitudes
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class ActiveSetEnd:
     """The best point: p >= 0 (n,), a (k,), its set (n,), and the relative residual after each step."""
 

@@ -5,7 +5,7 @@ set follow, and where all of them fail, this method from its own start. Quadrati
 solution.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import qr
@@ -23,6 +23,7 @@ from bemcontact.formulations.active_set import (
 from bemcontact.formulations.lemke import lemke
 from bemcontact.formulations.open_position import with_chosen_position
 from bemcontact.formulations.scaling import ACCEPTED, ScaledContact, scale, scaled_point, unscaled
+from bemcontact.frozen import frozen
 from bemcontact.options import FormulationName, SolveOptions, options_of
 
 BALANCED = 1e-12
@@ -154,7 +155,7 @@ def _spanning_points(motions: Array) -> IntArray:
     return np.array(qr(motions.T, mode="r", pivoting=True)[-1][:k], np.int64) if k else np.zeros(0, np.int64)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class FoundState:
     """End of a search: the point, its status, the method that ended it, and the history of both methods."""
 

@@ -1,7 +1,5 @@
 """Linear complementarity problems of any kind, in numbers of natural sizes."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike
@@ -12,6 +10,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.formulations.complementarity import find_state
 from bemcontact.formulations.lemke import basic_solution, equilibrating, holds, holds_row_by_row, lemke
 from bemcontact.formulations.scaling import ScaledContact
+from bemcontact.frozen import frozen
 from bemcontact.threads import one_thread
 
 FAINT = 0.0, 1e-15, 1e-14, 1e-13, 1e-12
@@ -20,7 +19,7 @@ OF_RIGHT, UNDECIDED = 1e-6, 1e-10
 """Weights of the numbers of q, and of a factor of one, in the choice of natural factors; the numbers of M have one."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class LcpResult:
     """Result of `solve_lcp`; z and w are a solution only with `bemcontact.Status.SOLVED`.
 

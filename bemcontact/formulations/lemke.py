@@ -5,7 +5,6 @@ Cottle, Pang and Stone, "The Linear Complementarity Problem", 1992, section 4.4,
 """
 
 from contextlib import suppress
-from dataclasses import dataclass
 
 import numpy as np
 import scipy
@@ -14,6 +13,7 @@ from bemcontact.arrays import Array, BoolArray, powers_of_two
 from bemcontact.contact.solution import Status
 from bemcontact.formulations.linear_rays import FINEST
 from bemcontact.formulations.local_solver.infeasibility import proof_of_infeasibility
+from bemcontact.frozen import frozen
 
 PIVOT = 1e-11
 TIE = 1e-12
@@ -25,7 +25,7 @@ REFRESH = 50
 EQUILIBRATIONS = 10
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class LemkeEnd:
     """How the path of pivots ended: its status, where z is basic (n,), and z0 after each pivot (`covers`).
 

@@ -4,7 +4,7 @@ x = (u_n, p), or (u_n, p, a) where the compliance rows bring in the amplitudes; 
 `bemcontact.formulations.scaling`, but with u_n itself and not the gap, so that the null vector is that of [SS92].
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.linalg import matrix_rank
@@ -17,13 +17,14 @@ from bemcontact.formulations.local_solver.factorizations import inertia
 from bemcontact.formulations.local_solver.minimize import minimize_qp
 from bemcontact.formulations.local_solver.result import QPOptions, QPResult
 from bemcontact.formulations.scaling import ScaledContact, scale
+from bemcontact.frozen import frozen
 from bemcontact.options import Rows
 
 WORTH_ELIMINATION = 250
 """Number of variables from which QP1 is minimized over the gaps alone."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Equations:
     """A x = b over x of N entries: `matrix` (m, N) and `right` (m,)."""
 
@@ -42,7 +43,7 @@ class Equations:
         return Equations(matrix=self.matrix / size[:, None], right=self.right / size)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Program:
     """Minimize pᵀJ(ε + u_n) + (1/μ)|E x - e|² subject to equations and ε + u_n >= 0, p >= 0.
 

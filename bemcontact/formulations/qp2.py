@@ -20,7 +20,7 @@ zᵀ(W - (μ/4) D Dᵀ)z, so that QP2 is convex up to the smallest eigenvalue of
 equilibrium does not make vanish is a saddle for every μ.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import eigvalsh
@@ -38,13 +38,14 @@ from bemcontact.formulations.program import (
 )
 from bemcontact.formulations.scaling import scale, scaled_weights
 from bemcontact.formulations.search import polished, searched
+from bemcontact.frozen import frozen
 from bemcontact.options import Equilibrium, FormulationName, Rows, SolveOptions, Weights, options_of
 
 NEGLIGIBLE = 1e-10
 """Entry of ZᵀJR that is round-off; by the scaling the numbers are of size one."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Ray:
     """A direction of two contact points along which QP2 falls without end, once μ is above a limit.
 

@@ -7,7 +7,7 @@ In equilibrium the objective is pᵀJδ, (19). M stays unsymmetric in the constr
 part only, which changes no value of it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import eigvalsh
@@ -20,6 +20,7 @@ from bemcontact.formulations.clarabel import STATUSES, minimize_convex
 from bemcontact.formulations.complementarity import escape_note, polish
 from bemcontact.formulations.piqp import minimize_by_piqp
 from bemcontact.formulations.scaling import ACCEPTED, ScaledContact, scale, scaled_point, scaled_weights, unscaled
+from bemcontact.frozen import frozen
 from bemcontact.options import ConvexSolver, FormulationName, SolveOptions, Weights, options_of
 
 NEGLIGIBLE = 1e-10
@@ -40,7 +41,7 @@ def import_cvxpy() -> None:
     import cvxpy  # noqa: F401
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Objective:
     """½ pᵀH p + cᵀp + bᵀa + d, which is pᵀJ(q + M p + R a) for every p in equilibrium.
 
@@ -168,7 +169,7 @@ def _rescued(contact: CondensedContact, solution: ContactSolution) -> ContactSol
     return replace(solution, status=Status.SOLVED, notes=(*solution.notes, note))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class _Optimum:
     """Outcome of the quadratic program; pressure and amplitudes are zeros if there is no point."""
 

@@ -4,8 +4,6 @@ Displacement is divided by U, pressure by T (`CondensedContact.scales`), weights
 motion by its own largest component along the normals. A change of units leaves the numbers here unchanged.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from bemcontact.arrays import Array
@@ -14,13 +12,14 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.free_motions import ContactScales, MotionAlgebra
 from bemcontact.contact.load_cases import Change
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.frozen import frozen
 from bemcontact.options import Weights
 
 ACCEPTED = 1e-11
 """Value of `ScaledContact.residual` up to which a point is a solution: a little above round-off."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class ScaledContact(MotionAlgebra):
     """gap = q + M p + R a >= 0, p >= 0, p·gap = 0, Rᵀ J p = -load, in dimensionless numbers.
 

@@ -2,7 +2,7 @@
 
 import json
 import os
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from bemcontact.checks.arguments import label
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import OptionError, ProblemError, SpecError, escaped
 from bemcontact.files.text import text_of
+from bemcontact.frozen import frozen
 from bemcontact.options import STARTS, SolveOptions, StartName, ensure_whole
 
 RESULTS = "a JSON file that `bemcontact solve --json FILE` has written"
@@ -21,7 +22,7 @@ SPREAD = 2.0
 """Largest random pressure over T, and size of a random displacement over U."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Start:
     """Where a local solver starts, in the user's units.
 

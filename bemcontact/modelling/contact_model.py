@@ -1,7 +1,6 @@
 """A condensed contact as a model in cvxpy: variables, expressions, parameters, objective and constraints."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from numbers import Real
 from typing import Any, cast
 
@@ -20,6 +19,7 @@ from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import Answer, minimize_convex
 from bemcontact.formulations.complementarity import ACTIVE_SET, polish
 from bemcontact.formulations.scaling import ScaledContact, motion_sizes, scale
+from bemcontact.frozen import frozen
 from bemcontact.modelling.contact_problem import ContactProblem, ensure_convex
 from bemcontact.modelling.model_result import ModelResult, judged, read_back, solution_at
 from bemcontact.modelling.parameters import Parameters, Value
@@ -31,7 +31,7 @@ WIDE = 1e5
 """Gaps over the displacements under the load from which a load is light: Clarabel's tolerance takes these digits."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class ContactModel(WithHints):
     """Minimize F3 = pᵀJ gap with gap = q + M p + R a >= 0, p >= 0, ℓᵀp = -load, (40)-(42), to be extended in cvxpy.
 

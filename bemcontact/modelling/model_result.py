@@ -1,6 +1,6 @@
 """The result of a model: arrays, residuals, certificate, and an assessment in sentences."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, cast
 
 import cvxpy as cp
@@ -16,6 +16,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.clarabel import STATUSES, Answer
 from bemcontact.formulations.complementarity import escape_note, polish
+from bemcontact.frozen import frozen
 
 SEEN = 1e-5
 """Residual above which the optimum of a model with additions is no contact state: the root of Clarabel's tolerance."""
@@ -23,7 +24,7 @@ INACCURATE = "optimal_inaccurate"
 NOT_CONTACT = "optimum of your model, not a contact state"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class ModelResult(WithHints):
     """The optimum of a contact model, recomputed and assessed; arrays are None where there is no optimum.
 

@@ -1,6 +1,6 @@
 """Parameters of a model: initial gap, load cases and tools as parameters of cvxpy, and the sums that they enter."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, cast
 
 import cvxpy as cp
@@ -10,6 +10,7 @@ from bemcontact.arrays import Array, real_array
 from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen
 
 Value = cp.Expression | Array
 
@@ -32,7 +33,7 @@ class RowParameter(cp.Parameter):
         return real_array(given, f"the value of {self.name()}", self.shape).copy()
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Parameters:
     """Parameters in the user's units, None where there is nothing of the kind, and the sums that they enter linearly.
 

@@ -7,14 +7,13 @@ Von Mises's stress is √3 times the length of a vector that is linear in the co
 and so is the largest shear stress in the plane. `expression <= limit` is a second-order cone for each point.
 """
 
-from dataclasses import dataclass
-
 import cvxpy as cp
 import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.stress_operator import StressOperator
+from bemcontact.frozen import frozen
 
 DEVIATOR = np.array([[np.sqrt(0.75), -np.sqrt(0.75), 0, 0], [0, 0, np.sqrt(3.0), 0], [0.5, 0.5, 0, -1]])
 """(3, 4) D: von Mises's stress is |D σ| with σ = (σxx, σyy, σxy, σzz)."""
@@ -23,7 +22,7 @@ RADIUS = np.array([[0.5, -0.5, 0, 0], [0, 0, 1, 0]])
 """(2, 4): |RADIUS σ| is the largest shear stress in the plane."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class ModelStress(WithHints):
     """Stress at k points as expressions of cvxpy, in the user's unit; tension is positive.
 

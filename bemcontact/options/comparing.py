@@ -1,13 +1,13 @@
 """The options of a comparison: which formulations are compared with the direct solution, with which weights."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import product
 from typing import Any, Unpack, cast
 
 from bemcontact.checks.arguments import shown
 from bemcontact.checks.keywords import refusing_unknown
 from bemcontact.errors import OptionError
+from bemcontact.frozen import frozen_value
 from bemcontact.options.declaration import (
     declared,
     documented,
@@ -21,7 +21,7 @@ from bemcontact.options.solving import COMPARED, ComparisonKeywords, Formulation
 
 @documented
 @refusing_unknown(ensure_known)
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class ComparisonOptions:
     """What is compared with the direct solution: each formulation with all weights, QP2 with all penalties.
 

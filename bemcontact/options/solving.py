@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from itertools import chain
 from typing import Any, Protocol, TypedDict, Unpack, cast, runtime_checkable
@@ -10,6 +9,7 @@ from typing import Any, Protocol, TypedDict, Unpack, cast, runtime_checkable
 from bemcontact.checks.arguments import real_number, shown
 from bemcontact.checks.keywords import refusing_unknown
 from bemcontact.errors import OptionError, ProblemError
+from bemcontact.frozen import frozen_value
 from bemcontact.options.asking import AskingKeywords
 from bemcontact.options.declaration import STARTS, declared, documented, ensure_known, ensure_whole_fields, named
 
@@ -145,7 +145,7 @@ class ComparingKeywords(ComparisonKeywords, AskingKeywords, total=False):
 
 @documented
 @refusing_unknown(ensure_known)
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class SolveOptions:
     """How a contact problem is solved.
 

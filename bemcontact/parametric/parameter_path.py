@@ -1,7 +1,6 @@
 """A load path as a function of a parameter: the data of its table, file and figure."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from importlib import import_module
 from os import PathLike
 from typing import Any
@@ -15,6 +14,7 @@ from bemcontact.assessment.penetration import Penetration
 from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.record import UnitsRecord, units_record
+from bemcontact.frozen import frozen
 from bemcontact.parametric.path import LoadPath
 from bemcontact.serialization import Internal, Leaf, Pair, Pairs, csv_text
 from bemcontact.views import VIEWS, Tabular
@@ -29,7 +29,7 @@ RESIDUAL = 1e-10
 """Allowed residual at breakpoints, as in the certificate of a single solution."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class PathState(Leaf):
     """A contact state on a load path."""
 
@@ -77,7 +77,7 @@ class PathState(Leaf):
         return [item.start_arc for item in intervals], [item.end_arc for item in intervals]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class ParameterPath(Leaf, Tabular):
     """A load path between two values of a parameter."""
 

@@ -1,7 +1,7 @@
 """Load paths: all contact states between two of one body, exact, with every point that enters or leaves contact."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -18,6 +18,7 @@ from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.open_position import note_of_open, with_chosen_position
 from bemcontact.formulations.scaling import scale, scaled_change, scaled_point, unscaled
+from bemcontact.frozen import frozen
 from bemcontact.options import FormulationName
 from bemcontact.parametric.pivoting import LinearChange, Trail, trail_along
 from bemcontact.serialization import Internal, Leaf, Matrix, Pair, PairTables, Vector
@@ -40,7 +41,7 @@ SOLVER = "parametric pivoting"
 NOT_PROVED = "the compliance does not rule out other contact states beside those of this path"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class LoadPath(Leaf):
     """The contact states between two ends, t = 0 and t = 1, linear in t between b breakpoints.
 

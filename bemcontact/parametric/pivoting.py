@@ -18,7 +18,7 @@ If the load has moved beyond the support, the body tips at constant load until a
 stays, the position jumps.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Self
 
 import numpy as np
@@ -35,6 +35,7 @@ from bemcontact.formulations.active_set import EPS, ContactBlock
 from bemcontact.formulations.lemke import equilibrating, lemke
 from bemcontact.formulations.open_position import farthest
 from bemcontact.formulations.scaling import ScaledContact
+from bemcontact.frozen import frozen
 
 WEAK = 1e-10
 """Pressure over the size of the numbers in it, and gap over the gap of the point under this size, that count as zero.
@@ -53,7 +54,7 @@ NOT_UNIQUE = "the contact state may go on in more than one way here, as the comp
 NO_WAY = "no contact state was found to continue this one: the path turns back or ends here"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Rate:
     """Derivative of a state, dimensionless: ṗ (n,), δ̇ (n,), ȧ (k,), with the points in contact just after."""
 
@@ -63,7 +64,7 @@ class Rate:
     block: ContactBlock
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Tangent:
     """A contact state with its strongly and weakly active points.
 
@@ -236,7 +237,7 @@ def is_monotone(scaled: ScaledContact) -> bool:
     return Definiteness.of(scaled.weights, scaled.compliance, scaled.equilibrium).definite
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class LinearChange:
     """Offset and load between two ends, s = 0 and s = 1, dimensionless."""
 
@@ -253,7 +254,7 @@ class LinearChange:
         return Change(*((1 - s) * first + s * last for first, last in zip(self.first, self.last, strict=True)))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class State:
     """A contact state on the line: s, p >= 0 (n,), δ >= 0 (n,), a (k,), dimensionless."""
 
@@ -263,7 +264,7 @@ class State:
     amplitudes: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Trail:
     """The breakpoints of a path, from s = 0 on.
 

@@ -1,7 +1,7 @@
 """Sensitivities: exact derivatives of a contact state, from the points in contact and one factorization for all."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Self
 
 import numpy as np
@@ -17,6 +17,7 @@ from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError, SingularSystemError
 from bemcontact.formulations import complementarity
 from bemcontact.formulations.scaling import scale, scaled_change, scaled_point, unscaled
+from bemcontact.frozen import frozen
 from bemcontact.parametric.path import NOT_PROVED
 from bemcontact.parametric.pivoting import WEAK, Tangent, is_monotone
 from bemcontact.serialization import Internal, Leaf, Pairs, Vector
@@ -28,7 +29,7 @@ NAMED = 4
 """Points that a note names; the others are counted."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Rates(Leaf):
     """Derivatives of a contact state per unit of what changes."""
 
@@ -54,7 +55,7 @@ class Rates(Leaf):
         freeze_arrays(self)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class Sensitivity(Leaf):
     """Derivatives of a contact state with respect to one parameter."""
 
@@ -88,7 +89,7 @@ class Sensitivity(Leaf):
         return replace(self, rising=rising, falling=replace(self.falling, peak=None) if self.one_sided else rising)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class Sensitivities(Leaf):
     """Derivatives of a contact state with respect to its parameters."""
 

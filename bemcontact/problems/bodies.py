@@ -1,7 +1,7 @@
 """Several bodies: what a spec says of each, their copies, and the contacts between them."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import (
@@ -14,6 +14,7 @@ from pydantic import (
 )
 
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 from bemcontact.problems.boundary import Boundary
 from bemcontact.problems.conditions import Condition, Loads
 from bemcontact.problems.contact_zone import Names
@@ -158,7 +159,7 @@ class BodyContact(SpecModel):
     """The clearance that is added to the gap as drawn; a negative one is an interference."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Part:
     """An elastic body of a problem.
 

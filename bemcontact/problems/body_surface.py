@@ -1,7 +1,7 @@
 """The boundary of a body as the surface that another body touches."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import chain, permutations
 from typing import ClassVar, NamedTuple
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from bemcontact.arrays import Array, BoolArray, IntArray, magnitudes
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen
 from bemcontact.problems.curves import Curve, Edge, Segment, cross, inner
 from bemcontact.problems.edge_places import (
     CORNER,
@@ -92,7 +93,7 @@ class Feet(NamedTuple):
     at_corner: BoolArray
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class BodySurface:
     """Some or all edges of a body, as the surface that another body touches.
 
@@ -409,7 +410,7 @@ def _neighbors(loops: Sequence[Sequence[Edge]]) -> Iterable[tuple[Edge, Edge, Ed
     return chain.from_iterable(zip(loop, (loop[-1], *loop[:-1]), (*loop[1:], loop[0]), strict=True) for loop in loops)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class BodyZone:
     """Edges of one body that may touch another one, as `ContactZone` has them for a rigid surface."""
 

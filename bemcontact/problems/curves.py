@@ -1,7 +1,6 @@
 """Edges with both ends, and their curves: length, points and directions by fraction of the arc length."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from math import atan2, cos, degrees, fsum, hypot, log, pi, radians, sin
 from typing import Protocol
@@ -10,6 +9,7 @@ import numpy as np
 
 from bemcontact.arrays import Array
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen_value
 from bemcontact.problems.elliptic import second_kind
 
 Pair = tuple[float, float]
@@ -44,7 +44,7 @@ class Curve(Protocol):
         ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Segment:
     """The straight line from start to end."""
 
@@ -85,7 +85,7 @@ class Segment:
         return np.clip((points - np.array(self.start)) @ along / self.length, 0.0, 1.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class CircularArc:
     """center + r (cos θ, sin θ) with θ from start_angle over sweep, in radians, counterclockwise if sweep > 0.
 
@@ -133,7 +133,7 @@ class CircularArc:
         return np.minimum(turned / sweep, 1.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class EllipticArc:
     """center + rotation · (a cos t, b sin t), t from start_angle over sweep: eccentric angles in radians."""
 
@@ -256,7 +256,7 @@ class EllipticArc:
         return t
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Edge:
     """A named edge of the boundary with both ends, and its division into elements.
 

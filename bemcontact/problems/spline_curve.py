@@ -1,12 +1,11 @@
 """Smooth curves through points, parametrized by their arc length."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import scipy
 
 from bemcontact.arrays import Array, magnitudes
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen_value
 from bemcontact.problems.curves import Pair
 
 ORDER = 16
@@ -15,7 +14,7 @@ SAMPLES = 16
 """Pieces of a polyline between two points."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class SplineCurve:
     """A curve whose coordinates are cubic splines of the length along the chords.
 

@@ -1,7 +1,7 @@
 """Unions of classes of which the key `kind` chooses one."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -10,11 +10,12 @@ from pydantic_core import CoreSchema, core_schema
 
 from bemcontact.cached import cached_property
 from bemcontact.errors import Issue
+from bemcontact.frozen import frozen_value
 from bemcontact.problems.validation import SpecModel, invalid, validation_error
 from bemcontact.problems.wording import described, unknown_word
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class TaggedUnion:
     """Annotation of a union whose member is chosen by the key `kind`, here and in the JSON Schema.
 

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Never, Self
 
 from pydantic import (
@@ -21,6 +21,7 @@ from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 from bemcontact.checks.arguments import label_fault, shown
 from bemcontact.checks.docstrings import attribute_docstrings, docstring
 from bemcontact.errors import LINE_BREAKS, Issue, ProblemError, hidden_character
+from bemcontact.frozen import frozen_value
 from bemcontact.problems.examples import (
     annotation_at,
     annotation_of,
@@ -47,7 +48,7 @@ INTERNAL = ("example", "root", "other_words", "elsewhere", "inside", "as_spec")
 """Names of each part of a problem that the package alone uses."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class KeyIssue(Issue):
     """An issue with the last key of the path, not with the value under it."""
 

@@ -1,15 +1,15 @@
 """Closed forms of frictionless line contact from textbooks; forces are per thickness."""
 
-from dataclasses import dataclass
 from math import copysign, pi, sqrt
 
 import numpy as np
 
 from bemcontact.arrays import Array
+from bemcontact.frozen import frozen_value
 from bemcontact.problems.material import Material
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class HertzContact:
     """Two cylinders pressed together: p = p0 sqrt(1 - x²/b²) with b² = 4 P R / (π E*), [Joh85] (4.43) to (4.45).
 
@@ -48,7 +48,7 @@ class HertzContact:
         return 0.23 * ratio**2
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class PunchOnHalfPlane:
     """A rigid flat punch on a half-plane: p = P (1 + 2 e x/a²) / (π sqrt(a² - x²)), [Joh85] (2.64) for e = 0.
 
@@ -101,7 +101,7 @@ class PunchOnHalfPlane:
         return np.where(away, 0.0, pressure)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class ShrunkRing:
     """Lamé's ring a <= r <= b, one face of which is moved by δ against the pressure, [TG70] art. 28.
 
@@ -135,7 +135,7 @@ class ShrunkRing:
         return 2 * G * self.interference * wall / (touched * ((1 - 2 * nu) * touched**2 + free**2))
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class ClosedCrack:
     """An elliptical opening in an infinite panel, closed by compression q across it.
 
@@ -174,7 +174,7 @@ class ClosedCrack:
         return np.where(np.abs(x) < a * (1 - 1e-12), self.pressure_along_plane * cosine, np.nan)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class BeamOverProp:
     """A beam of span l and height h on two end supports, under q, that sinks by g onto a prop in its middle.
 

@@ -1,7 +1,7 @@
 """Values that the references of a spec expect at the contact points."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, Self
 
 import numpy as np
@@ -10,6 +10,7 @@ from pydantic import PlainSerializer, computed_field
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen
 from bemcontact.problems import (
     Crack,
     FlatPunch,
@@ -89,7 +90,7 @@ def _known(pressure: Array) -> list[float | None]:
     return [float(p) if np.isfinite(p) else None for p in pressure]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Expected(Leaf):
     """Values that a reference expects of the solution; null for quantities without one."""
 

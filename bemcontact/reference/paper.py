@@ -4,10 +4,11 @@ Pressures are in kN/cm², lengths in cm, as in the paper.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum, auto
 from types import MappingProxyType
 
+from bemcontact.frozen import frozen_value
 from bemcontact.options import FormulationName
 
 
@@ -30,7 +31,7 @@ class PaperQuantity(Enum):
     """Largest difference of an unpolished pressure from the direct solution, over the peak."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class PaperStatement:
     """A statement of the paper."""
 
@@ -46,7 +47,7 @@ class PaperStatement:
     """Direction of a force."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class PaperProblem:
     """A problem of the paper."""
 

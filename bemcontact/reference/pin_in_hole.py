@@ -1,6 +1,5 @@
 """A round pin in a round hole of an infinite plate, pressed without friction on any part of its circumference."""
 
-from dataclasses import dataclass
 from math import atan, pi, radians, sqrt, tan
 from typing import NamedTuple
 
@@ -9,6 +8,7 @@ import scipy
 
 from bemcontact.arrays import Array
 from bemcontact.cached import cached_property
+from bemcontact.frozen import frozen_value
 from bemcontact.problems.material import Material
 
 TERMS = 40
@@ -32,7 +32,7 @@ class _Shape(NamedTuple):
     clearance: float
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class LoosePin:
     """A pin of radius R in a hole of radius R + c, under a load Q at its center, [Per64], [CD01].
 

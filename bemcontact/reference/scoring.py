@@ -1,20 +1,21 @@
 """Differences between a solution and its references."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from bemcontact.arrays import Array, BoolArray
 from bemcontact.assessment.footprint import ContactInterval, Footprint
 from bemcontact.contact.condensed_contact import CondensedContact
+from bemcontact.frozen import frozen_value
 from bemcontact.problems import Table, Values
 from bemcontact.reference.evaluation import Expected
 from bemcontact.reference.positions import LEVEL, Frame, coordinates, in_zone
 from bemcontact.serialization import Leaf
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Score(Leaf):
     """Computed and expected value of one quantity of a reference."""
 

@@ -3,10 +3,10 @@
 import json
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from bemcontact.files import output
+from bemcontact.frozen import frozen_value
 from bemcontact.studies.journal import JOURNAL, is_journal
 
 PICTURES = "figures"
@@ -15,7 +15,7 @@ OF_RESULTS = ("zones.csv", "intervals.csv", "points.csv", "stress.csv", "largest
 """Tables and spec in folders of results."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Contents:
     """Files of a kind of folder: title, names of page, JSON numbers, others and pictures, and keys of the numbers."""
 

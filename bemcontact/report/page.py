@@ -3,7 +3,6 @@
 import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 from urllib.parse import quote
@@ -12,6 +11,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from bemcontact.assessment.contender import OF_DIRECT, PREDICATES, Outcome
 from bemcontact.errors import escaped_lines
+from bemcontact.frozen import frozen_value
 from bemcontact.problems import Units
 from bemcontact.report.bars import BARS_ARE, NOTHING, accuracy_rows, infinite_peaks, with_bar
 from bemcontact.report.contact_words import PenaltyWords, penalty_in_words
@@ -53,7 +53,7 @@ NARROW = 385.0
 """Width in points of a picture that fills its place beside another one."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Picture:
     """A picture in the page."""
 

@@ -4,7 +4,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import Any, Unpack
 from bemcontact.analysis.solve import Progress
 from bemcontact.checks.arguments import ensure_callable, file_path, text_of_argument, whole_number
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen
 from bemcontact.options import ASKING, AskingKeywords, ensure_known
 from bemcontact.problems.problem import Problem
 from bemcontact.report.folder_kinds import STUDY, ensure_folder_writable
@@ -38,7 +39,7 @@ STAGE = "studying"
 """Name of the stage in progress."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class Study(StudyTable):
     """A study of parameters: a row for each member, with its outputs, their errors and its verdicts.
 

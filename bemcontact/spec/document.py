@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from bemcontact.errors import Issue, KeyPath
+from bemcontact.frozen import frozen_value
 from bemcontact.problems.key_path import with_entry
 from bemcontact.problems.validation import KeyIssue
 
@@ -26,7 +27,7 @@ LocatedMessage = tuple[Mark, str]
 """An error message and its place."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Place:
     """Places of a value and of its key; `scalar` tells that the value has no entries in the text."""
 
@@ -35,7 +36,7 @@ class Place:
     scalar: bool
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Document:
     """Data of a spec with the place of each value.
 

@@ -4,7 +4,7 @@ import os
 import re
 from cmath import phase, rect
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
 from itertools import pairwise
@@ -14,6 +14,7 @@ from typing import Any
 
 from bemcontact.checks.arguments import file_path, real_number, texts
 from bemcontact.errors import Issue, ProblemError
+from bemcontact.frozen import frozen_value
 from bemcontact.problems.geometry import MOST_POINTS
 from bemcontact.problems.units import METERS
 from bemcontact.spec.point_list import boundary_of_points
@@ -38,7 +39,7 @@ CHORDS = 32
 Edge = dict[str, Any]
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class DrawnPiece:
     """A line, an arc, a piece of an ellipse or a smooth curve of a drawing; points are complex numbers x + iy.
 

@@ -4,7 +4,7 @@ import json
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import instance_of, shown, text_of_argument
 from bemcontact.errors import Issue, KeyPath, OptionError, ProblemError, SpecError, dotted
+from bemcontact.frozen import frozen_value
 from bemcontact.problems.key_path import parsed_path
 from bemcontact.problems.quantities import in_units
 from bemcontact.problems.units import Units
@@ -33,7 +34,7 @@ _OTHER_LIST = re.compile(r"\s*(\{[^:]*\}|[-+\d][-+.\deE]*\.\.[-+.\deE]+)\s*")
 _OPENING, _CLOSING, _QUOTES = "[{(", "]})", "\"'"
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Axis:
     """Keys that take the same value, and the values one after the other.
 

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
@@ -13,6 +12,7 @@ from bemcontact.checks.arguments import texts
 from bemcontact.contact.free_motions import angle_of_round_off
 from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, LargestStresses, NoPeak
 from bemcontact.errors import OptionError
+from bemcontact.frozen import frozen_value
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.wording import unknown_word
 from bemcontact.serialization import Leaf
@@ -51,7 +51,7 @@ USUAL = ("peak", "resultant", "length", "displacement")
 """Outputs that are shown unless others are chosen."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Reading(Leaf):
     """A number of a result with its error."""
 

@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import islice
 from math import prod
 from typing import Any, Unpack
@@ -11,6 +11,7 @@ from typing import Any, Unpack
 from bemcontact.analysis.solve import asked, ensure_kind
 from bemcontact.analysis.variation import case_of
 from bemcontact.errors import Issue, OptionError, ProblemError
+from bemcontact.frozen import frozen
 from bemcontact.options import AskingKeywords
 from bemcontact.problems.problem import Problem
 from bemcontact.problems.wording import unknown_word
@@ -23,7 +24,7 @@ TOGETHER = 16
 """Largest number of members that are condensed together."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class StudyPlan:
     """A problem and the axes of its study; the first axis changes slowest.
 

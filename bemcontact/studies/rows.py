@@ -1,12 +1,12 @@
 """Rows of a study: the values, outputs and verdicts of one member."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
 from typing import Any
 
 from bemcontact.analysis.result import BEYOND, Result
+from bemcontact.frozen import frozen_value
 from bemcontact.serialization import Leaf
 from bemcontact.studies.outputs import Reading, grows, readings
 
@@ -21,7 +21,7 @@ class MemberStatus(StrEnum):
     FAILED = "failed"
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class MemberRow(Leaf):
     """A member of a study."""
 

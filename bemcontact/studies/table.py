@@ -4,7 +4,6 @@ import io
 import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from bemcontact.assessment.accuracy import together
 from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import is_real
 from bemcontact.contact.record import UnitsRecord
+from bemcontact.frozen import frozen, frozen_value
 from bemcontact.problems.units import Units
 from bemcontact.serialization import Leaf, Record, Recorded, csv_text
 from bemcontact.studies.axes import Axis
@@ -25,7 +25,7 @@ LEAST_BLOCK = 1 << 20
 """Bytes of JSON that are read at once, beside those of two lines."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class AxisRecord(Leaf):
     """An axis of a study."""
 
@@ -61,7 +61,7 @@ class StudyRecord(Record):
     """Members in the order of the grid."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class StudyTable(Recorded, Tabular):
     """The rows of a study.
 

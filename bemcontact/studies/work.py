@@ -23,6 +23,7 @@ from bemcontact.bem.condense import (
 )
 from bemcontact.bem.discretization import body_of
 from bemcontact.errors import BemContactError, ProblemError
+from bemcontact.frozen import frozen_value
 from bemcontact.options import SolveOptions
 from bemcontact.problems.problem import Problem
 from bemcontact.studies.plan import StudyPlan
@@ -31,7 +32,7 @@ from bemcontact.studies.rows import MemberRow, failed_row, row_of
 THREADS = "OMP_NUM_THREADS"
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Task:
     """Members that one worker solves together.
 

@@ -1,7 +1,6 @@
 """Equilibration: the program is scaled so that the units of the data have no influence on the answer."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import frexp, isfinite, ldexp, sqrt
 from typing import NamedTuple
 
@@ -11,6 +10,7 @@ from bemcontact.arrays import Array
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.factorizations import posv, row_lengths
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
+from bemcontact.frozen import frozen_value
 
 SWEEPS = 4
 """Sweeps of Ruiz's method (RAL-TR-2001-034) after the natural factors."""
@@ -24,7 +24,7 @@ WIDE = 49.0
 """Range of binary logarithms below which no entry can be rounding."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Scales:
     """Factors of a scaling: x = variables * (scaled x), scaled A = rows * A * variables, scaled H = objective * H."""
 

@@ -1,7 +1,6 @@
 """`minimize_qp`: scale the data, run both phases until a claim passes its check, and return to the given units."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from math import isfinite
@@ -37,6 +36,7 @@ from bemcontact.formulations.local_solver.statement import (
     read_statement,
 )
 from bemcontact.formulations.local_solver.working_set import WorkingSet, supporting
+from bemcontact.frozen import frozen_value
 from bemcontact.threads import one_thread
 
 Iterations = Callable[[SearchState, Sides], Sides]
@@ -51,7 +51,7 @@ FAILURES = 6
 """Largest number of restarts with new factors after a claim failed its check."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Finding:
     """Result of a run in scaled units.
 
@@ -74,7 +74,7 @@ class Finding:
     certificate: Array | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Restart:
     """The working set to continue from, and whether a claim failed."""
 

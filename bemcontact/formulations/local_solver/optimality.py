@@ -7,7 +7,7 @@ general (Murty and Kabadi 1987), so the search is bounded and may end undecided.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import scipy
@@ -18,6 +18,7 @@ from bemcontact.formulations.local_solver.factorizations import is_definite, ort
 from bemcontact.formulations.local_solver.progress import SearchState
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 from bemcontact.formulations.local_solver.working_set import DEPENDENT
+from bemcontact.frozen import frozen_value
 
 ZERO = 1e-11
 """A curvature below -ZERO is negative, in units in which the rows of |H| have size one."""
@@ -36,7 +37,7 @@ PROBES = 8
 DESCENTS = 30
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class CriticalCone:
     """{d : d_i = 0 outside `free`, E d = 0, W d >= 0}.
 
@@ -52,7 +53,7 @@ class CriticalCone:
     weak: Array
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Curvature:
     """Whether H is copositive on the cone, and if not, a unit direction (n,) of the cone with negative curvature.
 
@@ -207,7 +208,7 @@ SEEN = 3e-14
 """Part of its terms from which a multiplier is more than the rounding of the point as it is."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class FirstOrder:
     """First-order conditions at a point, in scaled units.
 

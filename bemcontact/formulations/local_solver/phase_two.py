@@ -10,7 +10,6 @@ is made conjugate to the others. No other direction is let in while one is pendi
 SIAM Review 33 (1991) 1-36; Gill and Wong, Math. Prog. Comp. 7 (2015) 71-112).
 """
 
-from dataclasses import dataclass
 from enum import Enum, auto
 from functools import lru_cache
 from math import sqrt
@@ -25,6 +24,7 @@ from bemcontact.formulations.local_solver.ratio_test import BlockingConstraint, 
 from bemcontact.formulations.local_solver.statement import EPS, Statement, largest
 from bemcontact.formulations.local_solver.steepest_edge import SteepestEdge
 from bemcontact.formulations.local_solver.working_set import FLAT, TEMPORARY, WorkingSet, wrong_sign
+from bemcontact.frozen import frozen_value
 
 REFINEMENTS = 4
 """Largest number of steps of refinement."""
@@ -170,7 +170,7 @@ class Ending(Enum):
     INACCURATE = auto()
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class PhaseTwoEnd:
     """How phase two stopped, and a ray (n,) if the objective seems to be unbounded."""
 

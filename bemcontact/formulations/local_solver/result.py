@@ -1,7 +1,7 @@
 """Options of `minimize_qp`, its status, the lines of its log, and its result."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -14,6 +14,7 @@ from bemcontact.checks.arguments import shown
 from bemcontact.checks.keywords import refusing_unknown
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.factorizations import Inertia, inertia
+from bemcontact.frozen import frozen_value
 
 
 class QPStatus(StrEnum):
@@ -68,7 +69,7 @@ class LogLine(NamedTuple):
 
 
 @refusing_unknown()
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class QPOptions:
     """Options of `minimize_qp`.
 
@@ -127,7 +128,7 @@ def _counts(value: object) -> bool:
     return isinstance(value, int | np.integer) and not isinstance(value, bool) and bool(value >= 0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class QPResult:
     """Result of `minimize_qp`, in the units of the data; of the log only the objective is.
 

@@ -1,6 +1,5 @@
 """The quadratic program, and the check of the data on entry."""
 
-from dataclasses import dataclass
 from math import sqrt
 from typing import Any
 
@@ -12,6 +11,7 @@ from bemcontact.arrays import Array, BoolArray, real_array
 from bemcontact.cached import cached_property
 from bemcontact.errors import ProblemError
 from bemcontact.formulations.local_solver.factorizations import symv
+from bemcontact.frozen import frozen_value
 
 Sides = NDArray[np.int8]
 
@@ -31,7 +31,7 @@ def largest(numbers: Array) -> float:
     return sizes.item(sizes.argmax()) if sizes.size else 0.0
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Statement:
     """min cᵀx + xᵀHx/2 over lower <= [x; A x] <= upper: a bound is a constraint whose normal is a unit vector.
 

@@ -7,7 +7,6 @@ although the profile is unknown. Without them, complementarity is dropped, and t
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import cvxpy as cp
@@ -22,6 +21,7 @@ from bemcontact.errors import SolverError
 from bemcontact.formulations import qp3
 from bemcontact.formulations.clarabel import minimize_convex
 from bemcontact.formulations.scaling import ScaledContact, scale
+from bemcontact.frozen import frozen
 from bemcontact.modelling.gap_design.designed_gap import Goal
 from bemcontact.modelling.gap_design.relief import Profiles
 from bemcontact.modelling.parameters import value_of
@@ -37,7 +37,7 @@ MARGIN = 1e-6
 """Relative increase of a known value of the goal, so that the relaxation surely admits it."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class BestProfile:
     """The best profile for given contact sets.
 
@@ -71,7 +71,7 @@ class Relaxation(NamedTuple):
     touching: BoolArray
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class SharedProfile:
     """Load states that share a profile, scaled alike, and the goal that is minimized.
 

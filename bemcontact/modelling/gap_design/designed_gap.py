@@ -1,6 +1,6 @@
 """A designed gap: the profile, the contact states without and with it, and the proof of optimality."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 
 import numpy as np
@@ -15,6 +15,7 @@ from bemcontact.checks.attributes import WithHints
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen
 from bemcontact.problems.surface_lines import Polyline, Spline
 from bemcontact.serialization import Internal, Leaf, Pairs, Vector
 from bemcontact.views import Tabular
@@ -52,7 +53,7 @@ class LoadStateRecord(FootprintRecord):
     """What is proved."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class LoadState(WithHints):
     """A contact state, solved by the direct solver and assessed."""
 
@@ -96,7 +97,7 @@ class LoadState(WithHints):
         )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@frozen
 class GapDesign(Leaf, Tabular):
     """A designed profile, with the contact states of all load states without and with it."""
 

@@ -1,7 +1,6 @@
 """The set of profiles of a design: bounds on values, slope and curvature, or on a few shapes."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from typing import Any, NamedTuple, Self
 
@@ -14,6 +13,7 @@ from bemcontact.cached import cached_property
 from bemcontact.checks.arguments import real_number, shown
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import ProblemError
+from bemcontact.frozen import frozen
 
 ReliefShape = Callable[[Array], ArrayLike]
 Range = float | tuple[float, float]
@@ -29,7 +29,7 @@ class Bounds(NamedTuple):
     high: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Relief:
     """Bounds on a profile g that is added to the initial gap: g > 0 removes material. All given bounds hold at once.
 
@@ -81,7 +81,7 @@ class Relief:
         return pairs if self.coefficients is None else {**pairs, "coefficients": self.coefficients}
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen
 class Profiles:
     """The set of profiles g = S c with low <= W c <= high, at all n contact points of a problem; all of it is in [L].
 

@@ -1,7 +1,7 @@
 """Pictures of a comparison along the contact zones: pressures, gaps and differences of all contenders."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,6 +14,7 @@ from bemcontact.assessment.comparison import SAME, Contender
 from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import ContactSolution
+from bemcontact.frozen import frozen_value
 from bemcontact.options import FormulationName
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.page import (
@@ -47,7 +48,7 @@ BEYOND = 1.3
 """Height of the frame over the peak of the direct solution."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class SharedCurve:
     """Curve of contenders with visibly equal values."""
 
@@ -139,7 +140,7 @@ def draw_differences(axes: Axes, level: MeshLevel) -> None:
     along.finish(axes)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class _Along:
     """Pieces of the contact zones, laid out one after the other on one axis."""
 

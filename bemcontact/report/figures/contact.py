@@ -1,7 +1,6 @@
 """Pictures of the deformed body: the contact to scale with the pressure as a fan, and the magnified shape."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
@@ -13,6 +12,7 @@ from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.mesh import element_curves
+from bemcontact.frozen import frozen_value
 from bemcontact.options import StressMeasure
 from bemcontact.problems import Problem
 from bemcontact.report.bars import with_bar, without_digits_beyond
@@ -76,7 +76,7 @@ MANY_ELEMENTS = 36
 """Number of elements from which their nodes alone show the curves."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Fan:
     """Pressure (j,) on an unbroken stretch of contact, with deformed points (j, 2) and unit normals (j, 2).
 
@@ -114,7 +114,7 @@ class Fan:
         return float(1 / (closing / (steps**2).sum(axis=1)).max()) if closing.any() else np.inf
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Setting:
     """What pictures side by side share: a window, two corners (2, 2), and the pressure and length of the longest fan.
 

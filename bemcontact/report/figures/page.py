@@ -4,7 +4,6 @@ import re
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from textwrap import wrap
@@ -26,6 +25,7 @@ from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.errors import escaped_lines
 from bemcontact.files import output
+from bemcontact.frozen import frozen_value
 from bemcontact.options import FormulationName
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.formatting import number, vector, with_unit
@@ -282,7 +282,7 @@ SEAM = 1e-9
 PIECE_COLOURS = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Piece:
     """An unbroken piece of boundary in one contact zone, with its points (m,) in order.
 

@@ -1,7 +1,6 @@
 """Stress all over the body, as filled contours in the pictures of it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -13,6 +12,7 @@ from matplotlib.tri import Triangulation, TriContourSet
 from bemcontact.analysis.result import Result
 from bemcontact.arrays import Array, BoolArray, IntArray
 from bemcontact.contact.stress import PointKind, TriangulatedBody
+from bemcontact.frozen import frozen_value
 from bemcontact.options import StressMeasure
 from bemcontact.report.contact_words import units_of
 from bemcontact.report.figures.page import BLACK, PowerInLabel, labeled, plain
@@ -54,7 +54,7 @@ def fill_with_stress(
     return f"{words}, {largest}" if largest else words
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class ColorScale:
     """Colors of a stress: between levels (l,), and those of stress beyond them."""
 

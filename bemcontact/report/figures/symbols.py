@@ -1,7 +1,6 @@
 """Lines, hatched ground, rollers, arrows, and names placed where they cover least."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +11,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Bbox
 
 from bemcontact.arrays import Array, BoolArray, IntArray
+from bemcontact.frozen import frozen_value
 from bemcontact.report.figures.page import add_path
 
 SYMBOL_REACH = 18.0
@@ -86,7 +86,7 @@ def least_crowded(centers: Array, size: tuple[float, float], taken: Sequence[Box
     return int(np.argmin([crowd(centered(at, size), taken, ink[first:last]) for at, first, last in columns]))
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen_value
 class Name:
     """A text, mathematics between dollars, to be placed near one of the anchors (c, 2), in its direction (c, 2).
 
