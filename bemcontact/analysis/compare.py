@@ -7,6 +7,7 @@ from typing import Unpack, cast
 
 from bemcontact.analysis.held_motions import MovingBody
 from bemcontact.analysis.mesh_study import MeshLevel, MeshStudy, Settings
+from bemcontact.analysis.motion_series import MotionSeries
 from bemcontact.analysis.solve import (
     Prepared,
     Progress,
@@ -21,6 +22,7 @@ from bemcontact.assessment.certificate import Certificate, CertificateKind
 from bemcontact.assessment.comparison import Comparison, comparison
 from bemcontact.assessment.contender import Attempt
 from bemcontact.bem.condense import boundary_state
+from bemcontact.bem.surface_gaps import surface_gaps
 from bemcontact.checks.arguments import ensure_callable
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.known_motions import KnownMotions
@@ -193,8 +195,11 @@ def _motions(prepared: Prepared, solution: ContactSolution, certificate: Certifi
     if condensation is None or not contact.free_motions:
         return KnownMotions.of(contact, solution)
     boundary = boundary_state(condensation, solution.pressure, solution.rigid_amplitudes)
-    solved = certificate.kind is not CertificateKind.NOT_A_SOLUTION
-    return MovingBody.of(condensation, boundary, solution, solved=solved).known
+    series = MotionSeries.none(contact.free_motions)
+    if certificate.kind is not CertificateKind.NOT_A_SOLUTION:
+        gaps = surface_gaps(condensation.body, boundary, contact, solution)
+        series = MotionSeries.of(gaps, condensation.body, contact, solution)
+    return MovingBody.of(condensation, boundary, solution, series).known
 
 
 def _attempted(

@@ -1,12 +1,7 @@
 """Free motions that only slopes and levers as drawn hold: how far a body moves along them is not known.
 
-Contact sees gaps along normals as drawn, and forces have the levers that they have there. A disk on two planes may
-spin, and its contact stays where it is. But with these normals and levers the disk seems to be held: as it spins, the
-places that press move along the rim, and the pressure gains a moment. The moment that the levers gain by the same
-motion takes all of it back. So each free motion is compared with what forces gain by it. To first order the true
-amplitudes are those of a geometric series, a + T a + T² a + …, with T = C G: G has the work in each free motion that
-forces gain by each, and C the amplitudes by which contact answers a load. Where an eigenvalue of T is near to one,
-nothing but these normals and levers holds the body. It is about 1e-5 where contact is wide beside displacements.
+All that is said of this follows from the eigenvalues of T, see `MotionSeries`: which amounts are not known, and which
+motions a body goes on in where it has moved to. If a load or a noticeable slope drives it there, that is the verdict.
 """
 
 from collections.abc import Iterator
@@ -16,34 +11,20 @@ from typing import NamedTuple, Self
 import numpy as np
 import scipy
 
-from bemcontact.analysis.displaced_contact import centroid, gain_by_turn
-from bemcontact.analysis.moved_contact import noted
-from bemcontact.arrays import (
-    Array,
-    BoolArray,
-    IntArray,
-    indices,
-    least_squares,
-    magnitudes,
-    norm,
-    row_norms,
-    scalar_products,
-)
+from bemcontact.analysis.motion_series import UNSEEN, MotionSeries
+from bemcontact.analysis.moved_contact import Judgement, MovedContact, noted
+from bemcontact.arrays import Array, BoolArray, magnitudes, norm, row_norms
 from bemcontact.assessment.accuracy import Accuracy, ErrorBar
+from bemcontact.assessment.penetration import Misfit, Penetration
 from bemcontact.bem.body import Body
 from bemcontact.bem.body_motions import amounts
 from bemcontact.bem.boundary_values import BoundaryState
 from bemcontact.bem.condense import Condensation
-from bemcontact.bem.free_motions import steps_of_surfaces
-from bemcontact.bem.surface_gaps import SAME_FACE, SurfaceGaps, surface_gaps
+from bemcontact.bem.free_motions import FreeMotions
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.known_motions import KnownMotions
 from bemcontact.contact.solution import ContactSolution
 from bemcontact.frozen import frozen
-from bemcontact.problems.body_surface import BodySurface
-from bemcontact.problems.curves import cross
-from bemcontact.problems.edge_places import curvatures, nearest_on, places_at
 
 MOVES_ON = 0.5
 """Eigenvalue of T from which the series adds as much as the first motion, or more, so that its amount is not known."""
@@ -53,8 +34,18 @@ TAKES_PART = 0.01
 Nor is it if as much again of the latter changes it by a part that is noted."""
 NOT_KNOWN = "not known: only slopes and levers as drawn hold it, which move with the body"
 """Note on a motion without an amount."""
-UNSEEN = 1e-9
-"""Change of gaps under pressure, over the largest one by a free motion, that is none."""
+LOOSE = 0.8
+"""Eigenvalue from which a body goes on to five times of the first motion, or farther."""
+NOTHING = 0.95
+"""Eigenvalue from which nothing holds a motion: it is one up to the error of the mesh."""
+DRIVEN = 1e-6
+"""Force along a motion, over that of contact that moves in it, that is more than rounded numbers."""
+PURE = 0.01
+"""Part of what drives all motions that contact does not resist, from which it drives one of them."""
+EXACT = 0.99
+"""Part of a motion without any along lines of force from which it is exactly that, but for the error of the mesh."""
+NAMED = 0.01
+"""Least share of a free motion that a sentence names, and by which two bodies move together."""
 
 
 @frozen
@@ -77,21 +68,18 @@ class MovingBody:
 
     @classmethod
     def of(
-        cls, condensation: Condensation, boundary: BoundaryState, solution: ContactSolution, *, solved: bool = True
+        cls, condensation: Condensation, boundary: BoundaryState, solution: ContactSolution, series: MotionSeries
     ) -> Self:
-        """The motions of a solution; of what is no solution, not `solved`, nothing is judged."""
+        """The motions of a solution with this series."""
         body, contact = condensation.body, condensation.contact
-        k = contact.free_motions
-        held = HeldMotions(np.ones(k, bool), np.zeros(k), np.zeros((k, k)))
-        if solved and k and solution.pressure.any() and not _gains_nothing(body, contact):
-            held = held_motions(surface_gaps(body, boundary, contact, solution), body, contact, solution)
+        held, errors, unheld = _held(series, solution.rigid_amplitudes, noted(body.problem))
         amplitudes, moved = solution.rigid_amplitudes, boundary.displacement
         found, arms = amounts(body, amplitudes, moved), np.where(turns(body), body.seen.arms, 1.0)
-        known = KnownMotions.of(contact, solution, np.where(turns(body), found, 0.0), held.held)
+        known = KnownMotions.of(contact, solution, np.where(turns(body), found, 0.0), held, turns(body))
         most = np.unravel_index(magnitudes(moved).argmax(), moved.shape[:2])
         ways = body.seen.displacement(body.mesh)[body.mesh.elements[most]]
-        unsure = abs(norm(moved[most]) - norm(moved[most] - ways @ held.unheld @ (found * arms)))
-        return cls(body=body, contact=contact, known=known, errors=held.errors / arms, unsure=unsure)
+        unsure = abs(norm(moved[most]) - norm(moved[most] - ways @ unheld @ (found * arms)))
+        return cls(body=body, contact=contact, known=known, errors=errors / arms, unsure=unsure)
 
     def judged(self, accuracy: Accuracy) -> Accuracy:
         """Accuracy without error bars of what is not known, and with the errors of slopes and levers in the others."""
@@ -100,8 +88,9 @@ class MovingBody:
     def _judged(self, bar: ErrorBar) -> ErrorBar:
         """An error bar, if it is of a motion, or of the largest displacement."""
         if bar.quantity == "displacement" and bar.bar is not None and bar.value is not None:
-            if self.unsure <= bar.bar * bar.value:
-                return bar
+            part = self.unsure / bar.value if bar.value else 0.0
+            if part <= max(bar.bar, noted(self.body.problem)):
+                return replace(bar, bar=bar.bar + part)
             moving = " and the ".join(self.known.unknown)
             amount = "amount is" if len(self.known.unknown) == 1 else "amounts are"
             why = f"not known: it has a part of the {moving}, whose {amount} not known"
@@ -131,182 +120,169 @@ def turns(body: Body) -> BoolArray:
     return np.isfinite(body.seen.arms)
 
 
-class HeldMotions(NamedTuple):
-    """What holds k free motions.
+def _held(series: MotionSeries, amplitudes: Array, part: float) -> tuple[BoolArray, Array, Array]:
+    """Free motions (k,) that something holds beside slopes and levers as drawn, and the errors (k,) by these [L].
 
-    Parameters
-    ----------
-    held : (k,) whether it is more than slopes and levers as drawn
-    errors : (k,) [L] of the amplitudes, because slopes and levers are those as drawn; zero where nothing else holds
-    unheld : (k, k) part of amplitudes along the ways that nothing else holds
+    From amplitudes (k,), and the `part` by which a change of one is noted. The errors are zero where nothing else
+    holds. Also the part (k, k) of amplitudes along the ways that nothing else holds.
     """
-
-    held: BoolArray
-    errors: Array
-    unheld: Array
-
-
-def held_motions(gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution) -> HeldMotions:
-    """Find the free motions that something holds beside slopes and levers as drawn, and their errors by these."""
-    pressed = indices(solution.pressure > 0)
-    pairs = _Pairs.of(gaps, body, contact)
-    sizes = pairs.sizes[pressed].max(axis=0)
-    sizes[sizes == 0] = 1.0
-    gained = _gains(pairs, gaps, body, contact, solution)
-    series = _answers(contact, pressed, gained) / sizes * sizes[:, None]  # T of motions of size one
-    form, ways, count = scipy.linalg.schur(series, sort=lambda real, imaginary=0.0: real >= MOVES_ON)
-    free, others, known = ways[:, :count], ways[:, count:], form[count:, count:]
+    form, free, others = series.split(MOVES_ON)
+    count, sizes = free.shape[1], series.sizes
+    known = form[count:, count:]
     mixed = scipy.linalg.solve_sylvester(form[:count, :count], -known, form[:count, count:]) if count else form[:0]
-    unheld = free @ (free.T + mixed @ others.T) if count else np.zeros_like(series)
-    amplitudes = solution.rigid_amplitudes * sizes
-    most = np.maximum(noted(body.problem) * abs(amplitudes), UNSEEN * abs(amplitudes).max())
+    unheld = free @ (free.T + mixed @ others.T) if count else np.zeros_like(form)
+    amplitudes = amplitudes * sizes
+    most = np.maximum(part * abs(amplitudes), UNSEEN * abs(amplitudes).max(initial=0.0))
     held = (row_norms(free) <= TAKES_PART) & (abs(unheld @ amplitudes) <= most)
     first = others.T @ amplitudes
     further = np.linalg.solve(np.eye(len(known)) - known, known @ first)
     errors = np.where(held, abs(others @ further) / sizes, 0.0)
-    return HeldMotions(held, errors, unheld / sizes[:, None] * sizes)
+    return held, errors, unheld / sizes[:, None] * sizes
 
 
-def _gains_nothing(body: Body, contact: CondensedContact) -> bool:
-    """Whether nothing turns, and all sides that may touch are rigid and straight: then G is zero."""
-    if turns(body).any() or (body.points.opposite.node >= 0).any():
-        return False
-    zones = (contact.normals[contact.zone == number] for number in range(len(contact.zone_names)))
-    return all((normals == normals[:1]).all() for normals in zones)
-
-
-class _Pairs(NamedTuple):
-    """Both sides of n contact points in k free motions.
+@frozen
+class LooseMotions:
+    """Motions in which bodies go on where they have moved to, for hardly anything holds them there.
 
     Parameters
     ----------
-    slide : (n, k) of the body against the other side, along the boundary
-    turns : (2, n, k) [rad/L] of the body and of the other side
-    share : (n,) part of the body in the normals
-    curvature : (n,) [1/L] by which a slide changes the gap: half of this times its square
-    sizes : (n, k) largest displacement of one of both sides
+    first : the solution, and where its motion takes contact
+    series : of its steps
+    free : the k free motions of contact
+    ways : (n, 2, k) motion of the contact points against their surfaces in each of them
+    gained : (k,) work in each of them that forces gain by the motion
     """
 
-    slide: Array
-    turns: Array
-    share: Array
-    curvature: Array
-    sizes: Array
+    first: MovedContact
+    series: MotionSeries
+    free: FreeMotions
+    ways: Array
+    gained: Array
 
-    @classmethod
-    def of(cls, gaps: SurfaceGaps, body: Body, contact: CondensedContact) -> "_Pairs":
-        """Both sides of the contact points of a body."""
-        seen, points = body.seen, body.points
-        at, radius = seen.displacement(body.mesh), seen.radius
-        turn = np.zeros((len(at), len(seen)))
-        for number, part in enumerate(body.mesh.parts):
-            turn[part.nodes] = seen.coefficients[:, 3 * number + 2] / radius
-        own, other = (
-            at[points.node],
-            np.where((points.opposite.node >= 0)[:, None, None], at[points.opposite.node], 0.0),
-        )
-        its_turn = np.where((points.opposite.node >= 0)[:, None], turn[points.opposite.node], 0.0)
-        steps = steps_of_surfaces(body.problem)[contact.zone]
-        for number, tool in enumerate(body.problem.tools.values()):
-            mine = np.isin(contact.zone, [contact.zone_names.index(zone) for zone in tool.zones])
-            x, y, by = seen.tools[3 * number : 3 * number + 3]
-            lever = (contact.points - steps - contact.tools.point[number])[mine, :, None]
-            other[mine] = np.stack([x - by * lever[:, 1], y + by * lever[:, 0]], axis=1)
-            its_turn[mine] = by
-        along = np.column_stack([contact.normals[:, 1], -contact.normals[:, 0]])
-        share, curvature = _shapes(gaps, body, contact)
-        return cls(
-            slide=np.einsum("nx,nxk->nk", along, own - other),
-            turns=np.stack([turn[points.node], its_turn]),
-            share=share,
-            curvature=curvature,
-            sizes=np.maximum(np.hypot(*np.moveaxis(own, 1, 0)), np.hypot(*np.moveaxis(other, 1, 0))),
-        )
+    def judged(self) -> Judgement:
+        """Find what goes on although it should not, or else note what a little friction holds.
 
-    def second_changes(self, force: Array) -> Array:
-        """Work (k, k) of contact forces (n,) along the normals, by the second derivatives of the gaps of the motions.
-
-        With body 1 as y = κ₁ x²/2 and the other side as y = -κ₂ x²/2 along the normal, and σ the part of body 1 in
-        it, pairs stay at the part 1 - σ of a slide D on the other side. So the gap is σ² κ₁ D²/2 + (1 - σ)² κ₂ D²/2
-        - σ θ₁ D - (1 - σ) θ₂ D, beside what is linear.
+        A flat block slides on a round support, whose normals are tilted beside the place where it touches. It would
+        move until the tilt balances the load, but takes the place of contact with it. So does a disc that a couple
+        rolls along a plane: it would turn until the lever of the pressure balances the couple. A motion that slopes
+        drive by a small part of the forces, as that of a roller between bodies that bend, is noted.
         """
-        turns = self.share[:, None] * self.turns[0] + (1 - self.share[:, None]) * self.turns[1]
-        bent = self.slide.T @ ((force * self.curvature)[:, None] * self.slide)
-        turned = turns.T @ (force[:, None] * self.slide)
-        return bent - turned - turned.T
+        found = [*map(self._motion, self._together())]
+        if refused := [it for it in found if it.far and (it.driven or it.push >= self.first.noted)]:
+            return self._refused(max(refused, key=lambda it: it.moved)), ()
+        if said := [it for it in found if it.part >= NOTHING and it.push > DRIVEN]:
+            most = max(said, key=lambda it: it.push)
+            driven = ", and no load drives it" * most.exact
+            words = (
+                f"no contact holds the {self._named(most)}{driven}: {_pushes(most)}; its amount is not known, and a "
+                "little friction holds it"
+            )
+            return None, (words,)
+        return None, ()
+
+    @property
+    def amplitudes(self) -> Array:
+        """Amplitudes (k,) of the first solution in these motions, without those of others."""
+        ways, sizes = self.series.split(LOOSE)[1], self.series.sizes
+        return ways @ (ways.T @ (self.first.solution.rigid_amplitudes * sizes)) / sizes
+
+    def left_out_of(self, contact: CondensedContact) -> CondensedContact:
+        """A contact with these motions held where the first solution has them, for no judgement needs their amounts."""
+        others, sizes = self.series.split(LOOSE)[2], self.series.sizes
+        if others.shape[1] == contact.free_motions:
+            return contact
+        others = others / sizes[:, None]
+        return CondensedContact.from_compliance(
+            contact.compliance, contact.offset + contact.rigid_motions @ self.amplitudes, contact.weights,
+            rigid_motions=contact.rigid_motions @ others, motion_load=contact.motion_load @ others,
+        )  # fmt: skip
+
+    def _refused(self, it: "_Loose") -> Penetration:
+        """Say that a motion goes on."""
+        first, contact = self.first, self.first.contact
+        i = int(np.argmax(contact.weights * first.solution.pressure * abs(contact.rigid_motions @ it.way)))
+        why = " against the load" if it.driven else f": {_pushes(it)}"
+        words = (
+            f"{'No contact holds' if it.part >= NOTHING else 'Contact hardly holds'} the {self._named(it)}{why}. Only "
+            "slopes and levers as drawn seem to hold it, and they move with the body. Along this motion contact moves "
+            f"by {first.length(it.moved)}, from there on by {100 * it.part:.0f} % of that, and so on. Prescribe a "
+            "displacement that holds the body in this direction."
+        )
+        return first.misfit(Misfit.MOVED, words, i, it.moved)
+
+    def _named(self, it: "_Loose") -> str:
+        """Name a motion."""
+        return self.free.combined(np.where(abs(it.way) < NAMED * abs(it.way).max(), 0.0, it.way)[:, None]).describe()[0]
+
+    def _together(self) -> Iterator[Array]:
+        """Amplitudes (k, j) of the motions of each body, or of each group of bodies that move together."""
+        ways = self.series.split(LOOSE)[1] / self.series.sizes[:, None]
+        if not ways.shape[1]:
+            return
+        moved, size, turned = np.linalg.svd(self.free.coefficients.T @ ways, full_matrices=False)
+        ways = ways @ turned.T / size
+        parts = moved.reshape(-1, 3, ways.shape[1])
+        linked = abs(np.einsum("axi,byi->abxy", parts, parts)).max(axis=(2, 3)) > NAMED
+        for group in np.unique(np.linalg.matrix_power(linked, len(parts)), axis=0):
+            _, own, combined = np.linalg.svd(parts[group].reshape(-1, ways.shape[1]))
+            if (own > 0.5).any():
+                yield ways @ combined[: len(own)][own > 0.5].T
+
+    def _motion(self, ways: Array) -> "_Loose":
+        """That of some motions, with amplitudes (k, j), that load or slopes drive most."""
+        first, contact, sizes, unresisted = self.first, self.first.contact, self.series.sizes, self.series.unresisted
+        force, ways = contact.weights * first.solution.pressure, np.linalg.qr(ways * sizes[:, None])[0]
+        goes = self.ways / sizes @ ways
+        load = unresisted.T @ (contact.motion_load / sizes)
+        along, least = ways.T @ unresisted @ load, DRIVEN * float(force @ np.sqrt((goes**2).sum(axis=(1, 2))))
+        driven = norm(along) > max(least, PURE * norm(load))
+        work = along if driven else ways.T @ (self.gained / sizes)
+        steps = ways @ np.linalg.lstsq(np.einsum("n,nxj,nxk->jk", force, goes, goes), work)[0]
+        steps = steps if steps.any() else ways[:, 0]
+        free = unresisted @ (unresisted.T @ steps)
+        exact = norm(free) > EXACT * norm(steps)
+        steps = free if exact else steps
+        way = steps / sizes
+        goes = self.ways @ way
+        most = float(force @ magnitudes(goes)) or 1.0
+        lengths = contact.lengths_by_zone @ (first.solution.pressure > 0)
+        part = float(steps @ self.series.steps @ steps / (steps @ steps))
+        moved = abs(float(np.einsum("n,nx,nx", force, first.moved.motion, goes))) / most
+        return _Loose(
+            way=way / np.copysign(norm(way), way[abs(way).argmax()]),
+            part=part,
+            moved=moved,
+            far=part >= NOTHING or moved >= (1 - part) * first.noted * float(lengths[lengths > 0].min()),
+            driven=driven and exact,
+            exact=exact,
+            push=abs(float(self.gained @ way)) / most,
+        )
 
 
-def _shapes(gaps: SurfaceGaps, body: Body, contact: CondensedContact) -> tuple[Array, Array]:
-    """Part σ (n,) of the body in the normals, and σ² κ₁ + (1 - σ)² κ₂ (n,) [1/L]."""
-    share, curvature = np.zeros(len(contact.points)), np.zeros(len(contact.points))
-    for number, zone in enumerate(contact.zone_names):
-        own, surface = indices(contact.zone == number), gaps.surfaces.get(zone)
-        if isinstance(surface, BodySurface) and surface.elastic:
-            part, feet = surface.share, surface.pairs(contact.points[own])
-            one = curvatures(surface.first, nearest_on(surface.first, contact.points[own]))
-            two = curvatures(surface.edges, places_at(surface.edges, feet.edge, feet.fraction))
-            share[own], curvature[own] = part, part**2 * one + (1 - part) ** 2 * two
-        elif surface is not None:
-            for run in np.unique(contact.run[own]).tolist():
-                at = own[contact.run[own] == run]
-                curvature[at] = _bend_of_normals(contact.points[at], contact.normals[at])
-    return share, curvature
+class _Loose(NamedTuple):
+    """A motion that goes on.
 
-
-def _bend_of_normals(points: Array, normals: Array) -> Array:
-    """Curvature (j,) [1/L] of a rigid surface at points (j, 2) of a run by its normals, positive where it is convex."""
-    if len(points) < 2:
-        return np.zeros(len(points))
-    steps, middle = np.diff(points, axis=0), normals[1:] + normals[:-1]
-    along = middle[:, 1] * steps[:, 0] - middle[:, 0] * steps[:, 1]
-    turned = -cross(normals[:-1], normals[1:])
-    smooth = (scalar_products(normals[:-1], normals[1:]) >= SAME_FACE) & (along != 0)
-    bend = np.divide(2 * turned, along, out=np.zeros(len(along)), where=smooth)
-    return (np.append(bend[:1], bend) + np.append(bend, bend[-1:])) / 2
-
-
-def _gains(pairs: _Pairs, gaps: SurfaceGaps, body: Body, contact: CondensedContact, solution: ContactSolution) -> Array:
-    """G (k, k): work in each free motion (row) that forces gain by a unit of each (column)."""
-    seen, force = body.seen, contact.weights * solution.pressure
-    gained = pairs.second_changes(force)
-    for number, part in enumerate(body.mesh.parts):
-        center, turn = centroid(part.mesh), seen.coefficients[:, 3 * number + 2] / seen.radius
-        resultant, moment = gain_by_turn(gaps, body, part, center)
-        gained += np.outer(seen.of_body(number).work_of(resultant, moment, about=center), turn)
-    for number, dead in enumerate(_levers_on_tools(body, contact, force)):
-        gained -= dead * np.outer(seen.tools[3 * number + 2], seen.tools[3 * number + 2])
-    return gained
-
-
-def _levers_on_tools(body: Body, contact: CondensedContact, force: Array) -> Iterator[float]:
-    """Σ r·f [p L²] of the contact forces on each tool about its point: its load acts there."""
-    steps = steps_of_surfaces(body.problem)[contact.zone]
-    for number, tool in enumerate(body.problem.tools.values()):
-        own = np.isin(contact.zone, [contact.zone_names.index(zone) for zone in tool.zones])
-        lever = (contact.points - steps - contact.tools.point[number])[own]
-        yield -float(force[own] @ scalar_products(lever, contact.normals[own]))
-
-
-def _answers(contact: CondensedContact, pressed: IntArray, loads: Array) -> Array:
-    """Amplitudes (k, j) by which contact at the pressed points answers loads (k, j) in the free motions.
-
-    Motions that no pressed point sees have none.
+    Parameters
+    ----------
+    way : (k,) its amplitudes
+    part : by which it goes on
+    moved : by which contact has moved along it [L]
+    far : whether nothing holds it, or all steps together are noticeable beside a contact
+    driven : whether a load acts along it
+    exact : whether this is certain: no line of force has a part along it
+    push : force along it at the displaced places, over the force of all contacts that move in it: so it is the
+        coefficient of friction that holds the body there
     """
-    motions = contact.rigid_motions[pressed]
-    sizes = abs(motions).max(axis=0)
-    sizes[sizes == 0] = 1.0
-    ways, none = np.eye(len(sizes)), unseen_ways(motions / sizes, UNSEEN)
-    if none.shape[1]:
-        ways = scipy.linalg.null_space(none.T)
-    R, J = motions / sizes @ ways, contact.weights[pressed] / contact.weights[pressed].max()
-    unit = contact.scales.displacement / contact.scales.pressure
-    M, j = contact.compliance[np.ix_(pressed, pressed)] / unit, ways.shape[1]
-    rows = np.block([[M, R], [(J[:, None] * R).T, np.zeros((j, j))]])
-    right = np.zeros((len(rows), loads.shape[1]))
-    right[len(pressed) :] = -ways.T @ (loads / sizes[:, None]) / contact.weights[pressed].max()
-    # M x + R a = 0 and Rᵀ J x = -load, for pressures x and amplitudes a in the unit of the compliance
-    try:
-        found = np.linalg.solve(rows, right)
-    except np.linalg.LinAlgError:  # pressures that move no point
-        found = least_squares(rows, right)
-    return ways @ found[len(pressed) :] * unit / sizes[:, None]
+
+    way: Array
+    part: float
+    moved: float
+    far: bool
+    driven: bool
+    exact: bool
+    push: float
+
+
+def _pushes(it: _Loose) -> str:
+    """Say by how much slopes push, or loads if they are not told from slopes."""
+    return f"slopes{' or loads' * (not it.exact)} push along it by {100 * it.push:.2g} % of the force of contact"

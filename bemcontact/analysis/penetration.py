@@ -12,6 +12,7 @@ import numpy as np
 
 from bemcontact.analysis.diagnostics import longer
 from bemcontact.analysis.linear_theory import Noticed, linear_theory
+from bemcontact.analysis.motion_series import MotionSeries
 from bemcontact.analysis.moved_contact import judged_to
 from bemcontact.analysis.path_states import FollowedPath
 from bemcontact.analysis.placement import placement
@@ -41,13 +42,14 @@ def misfit(
     solution: ContactSolution,
     where: Footprint,
     infinite: Collection[str],
+    series: MotionSeries,
 ) -> tuple[Penetration | None, tuple[str, ...]]:
     """Find what does not fit, or else displacements that are not small; note the rest.
 
     `infinite` are the zones whose peak is. Strains that are not small fold the boundary, and those above one tell
     nothing of where the body is.
     """
-    deepest, notes = penetration(gaps, body, contact, solution, infinite=infinite)
+    deepest, notes = penetration(gaps, body, contact, solution, infinite=infinite, series=series)
     beyond, noticed = linear_theory(body, contact, solution, where, gaps.state)
     if deepest is None and beyond is None and not noticed:  # what strains change that are noted is not told twice
         beyond, noticed = second_order(body, gaps.state, contact.initial_gap)
@@ -65,6 +67,7 @@ def penetration(
     solution: ContactSolution,
     nearby: Array | None = None,
     infinite: Collection[str] = (),
+    series: MotionSeries | None = None,
 ) -> tuple[Penetration | None, tuple[str, ...]]:
     """Find the deepest penetration that is not tolerated, or else contact that is misplaced; note the rest.
 
@@ -88,7 +91,7 @@ def penetration(
         notes += _ended(gaps, zone, [end for end, hidden in found.ends if hidden > allowed])
     if worst is None or not worst.paired:  # an edge that is not in a zone may be there through the body itself
         worst = _through_itself(gaps, body) or worst
-    misplaced, said = (None, ()) if worst else placement(gaps, body, contact, solution, nearby, infinite)
+    misplaced, said = (None, ()) if worst else placement(gaps, body, contact, solution, nearby, infinite, series)
     return worst or misplaced, (*notes, *said)
 
 

@@ -15,13 +15,14 @@ import numpy as np
 
 from bemcontact.adaptivity.resting_contacts import motion_as_a_whole, motions_of_pairs
 from bemcontact.analysis.displaced_contact import load_after, ways_of_contact
+from bemcontact.analysis.held_motions import LooseMotions
+from bemcontact.analysis.motion_series import MotionSeries
 from bemcontact.analysis.moved_contact import (
     WITHHELD,
     Judgement,
     MovedContact,
     judged_to,
 )
-from bemcontact.analysis.second_motions import NO_CHANGE, SecondMotions
 from bemcontact.analysis.second_solution import SecondSolution
 from bemcontact.arrays import Array, IntArray, indices, norm
 from bemcontact.assessment.penetration import Misfit, Penetration
@@ -32,6 +33,9 @@ from bemcontact.contact.solution import ContactSolution
 from bemcontact.formulations import complementarity
 from bemcontact.problems.body_surface import BodySurface
 
+NO_CHANGE = 1e-7
+"""Difference of the gaps, over the displacement scale of contact, that changes nothing."""
+
 
 def placement(
     gaps: SurfaceGaps,
@@ -40,12 +44,14 @@ def placement(
     solution: ContactSolution,
     nearby: Array | None = None,
     infinite: Collection[str] = (),
+    series: MotionSeries | None = None,
 ) -> Judgement:
     """Find pressure off a surface, or pressure that the motion changes too much; note what it changes by less.
 
     Where the peak is `infinite`, in these zones, forces alone are judged.
     Of a state on a path, `nearby` (2, zones) is the least and the largest peak [p] of each zone a little before and
     after it. A peak between them is that of a parameter a little off: at first touch no peak is sure to any part of it.
+    The `series` of motions is computed if it is not given.
     """
     first = MovedContact(gaps=gaps, points=body.points, contact=contact, solution=solution)
     if not first.pressed.any():
@@ -66,24 +72,27 @@ def placement(
         notes, load = (*notes, *said), load - push
     largest = (contact.weights @ solution.pressure) * abs(contact.rigid_motions).max(axis=0, initial=0.0)
     load = np.where(abs(load[: contact.free_motions]) > NO_CHANGE * largest, load[: contact.free_motions], 0.0)
-    change = max(abs(moved.change).max() / contact.scales.displacement, abs(moved.turn).max())
-    if change <= NO_CHANGE and not load.any():
-        return None, notes
-    there = replace(contact, initial_gap=contact.initial_gap + moved.change, motion_load=contact.motion_load + load)
-    again = complementarity.solve(there, near=first.pressed)
     ways = ways[..., : contact.free_motions]
-    motions = SecondMotions(first=first, contact=there, solution=again, free=body.seen, ways=ways)
-    second = SecondSolution(first=first, contact=there, solution=motions.without_unknown())
-    misfit, said = motions.moves_on()
-    if misfit is None and nearby is None:
-        misfit, changed = second.forces_changed()
-        said = (*said, *changed)
+    series = series or MotionSeries.of(gaps, body, contact, solution)
+    loose = LooseMotions(first=first, series=series, free=body.seen, ways=ways, gained=load)
+    misfit, said = loose.judged()
+    notes, change = (*notes, *said), max(abs(moved.change).max() / contact.scales.displacement, abs(moved.turn).max())
+    if misfit is not None or (change <= NO_CHANGE and not load.any()):
+        return misfit, notes
+    there = replace(contact, initial_gap=contact.initial_gap + moved.change, motion_load=contact.motion_load + load)
+    held = loose.left_out_of(there)
+    again = complementarity.solve(held, near=first.pressed)
+    again = replace(again, displacement=held.offset + again.displacement - there.offset)
+    second = SecondSolution(first=first, contact=there, solution=again)
+    misfit, said = None, ()
+    if nearby is None:
+        misfit, said = second.forces_changed()
     notes = (*notes, *said)
     if misfit is not None:
         return misfit, notes
     misfit, said = second.peaks_changed([name for name in contact.zone_names if name not in infinite], nearby)
     if misfit is None and nearby is None:
-        misfit, others = _pairs_changed(first, body, motions.unknown_amplitudes)
+        misfit, others = _pairs_changed(first, body, loose.amplitudes)
         said = (*said, *others, *second.places_changed())
     return misfit, (*notes, *said)
 

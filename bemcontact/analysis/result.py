@@ -216,8 +216,8 @@ class Result(Recorded, Tabular):
     def rotations(self) -> Array | None:
         """Angle (k,) of each free motion, in radians and in the sense of its name; zero in a translation.
 
-        Not a number for `unknown_motions`; None for a condensed problem of elastic bodies that touch. That of a body
-        that touches elastic ones is the mean rotation of its boundary.
+        Not a number for a rotation among `unknown_motions`; None for a condensed problem of elastic bodies that touch.
+        That of a body that touches elastic ones is the mean rotation of its boundary.
         """
         return self.known_motions.rotations
 

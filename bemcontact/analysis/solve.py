@@ -11,6 +11,7 @@ from bemcontact.adaptivity.adapt import Meshed, meshed
 from bemcontact.adaptivity.singularities import Singularity
 from bemcontact.analysis.diagnostics import diagnostics, sides_of_one_body
 from bemcontact.analysis.held_motions import MovingBody
+from bemcontact.analysis.motion_series import MotionSeries
 from bemcontact.analysis.penetration import misfit
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import NO_MESH, Accuracy
@@ -331,16 +332,18 @@ def assessed(
         recomputed = residuals(contact, solution, None if boundary is None else boundary.force_balance)
         certificate = certify(contact, solution, recomputed)
         where, deepest, said = footprint(contact, solution, infinite=prepared.accuracy.infinite), None, ()
+        series = MotionSeries.none(contact.free_motions)
         if certificate.kind is not CertificateKind.NOT_A_SOLUTION:
             if boundary is not None and condensation is not None:
                 gaps = surface_gaps(condensation.body, boundary, contact, solution)
-                deepest, said = misfit(gaps, condensation.body, contact, solution, where, prepared.accuracy.infinite)
+                series = MotionSeries.of(gaps, condensation.body, contact, solution)
+                infinite = prepared.accuracy.infinite
+                deepest, said = misfit(gaps, condensation.body, contact, solution, where, infinite, series)
             body = None if condensation is None else condensation.body
             said += tuple(diagnostics(contact, solution, where, body, met=prepared.accuracy.met is True))
         motions = KnownMotions.of(contact, solution)
         if boundary is not None and condensation is not None:
-            solved = certificate.kind is not CertificateKind.NOT_A_SOLUTION
-            moving = MovingBody.of(condensation, boundary, solution, solved=solved)
+            moving = MovingBody.of(condensation, boundary, solution, series)
             motions, accuracy = moving.known, moving.judged(accuracy)
         if condensation is not None and not certificate.certified:
             said += tuple(sides_of_one_body(condensation.body.problem))

@@ -19,8 +19,8 @@ class KnownMotions:
 
     Parameters
     ----------
-    rotations : (k,) angle of each [rad], zero in a translation, and not a number where the amount is not known; None if
-        none of them is known
+    rotations : (k,) angle of each [rad], zero in a translation, and not a number in a rotation whose amount is not
+        known; None if none of them is known
     unknown : names of those whose amount is not known
     tools : (t, 3) whether the displacement of each tool is known along x and y, and its rotation
     """
@@ -40,20 +40,23 @@ class KnownMotions:
         solution: ContactSolution,
         rotations: Array | None = None,
         held: BoolArray | None = None,
+        turning: BoolArray | bool = True,
     ) -> Self:
         """What is known, with the angles (k,) of the boundary behind the contact points if they are computed from it.
 
-        `held` (k,) says which motions something else than slopes and levers as drawn holds: all if it is None. What
+        Of the motions that are `turning` (k,) something: the angle of others is zero, whatever their amount is. `held`
+        (k,) says which motions something else than slopes and levers as drawn holds: all if it is None. What
         contact leaves open is not known, nor is anything without contact.
         """
-        rotations = contact.rotations(solution.rigid_amplitudes) if rotations is None else rotations
+        if rotations is None and contact.motion_arms is not None:
+            rotations, turning = contact.rotations(solution.rigid_amplitudes), np.isfinite(contact.motion_arms)
         known = np.ones(contact.free_motions, bool) if held is None else held
         known = known & np.array([name not in solution.undetermined for name in contact.motion_names], bool)
         known &= bool(solution.pressure.any())
         moved = abs(contact.tools.amplitudes)
         part = moved > TAKES_PART * moved.max(axis=1, initial=0.0, keepdims=True)
         return cls(
-            rotations=None if rotations is None else np.where(known, rotations, np.nan),
+            rotations=None if rotations is None else np.where(known | ~np.asarray(turning), rotations, np.nan),
             unknown=tuple(name for name, is_known in zip(contact.motion_names, known, strict=True) if not is_known),
             tools=~(part & ~known).any(axis=1).reshape(-1, 3),
         )

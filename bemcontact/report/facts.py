@@ -45,6 +45,8 @@ UNRESOLVED = 1e-3
 """Share of the length of contact below which no place in it is resolved."""
 MOST_FIGURES = 10
 """Figures of the ends of a contact far from the origin; five tell all others apart."""
+MOVES = "translation "
+"""Words in the name of a translation."""
 NOT_KNOWN = "not known; only slopes and levers as drawn hold it, which move with the body"
 """Words for the angle of a body that turns on and on."""
 UNKNOWN_AMOUNT = "an amount that is not known"
@@ -127,6 +129,10 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
     for zone, written in forces.items() if len(forces) > 1 or sides else ():
         yield "Resultant", f"of {zone}{f' on {sides[zone][0]}' if sides else ''}: {written}"
     yield from rotations(record)
+    for name in record["unknown_motions"]:
+        of_body = name.startswith(MOVES) and " of the tool " not in name
+        if of_body and record["intervals"] and name not in record["undetermined"]:
+            yield "Translation", f"{name.removeprefix(MOVES)}: {NOT_KNOWN}"
     for tool in record["tools"]:
         yield "Tool", _tool(record, tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)

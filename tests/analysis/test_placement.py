@@ -360,7 +360,7 @@ def disc_on_planes(couple, slopes, *, turn=0.0, size=1.0, low=1.0, bore=0.0):
 
 @pytest.mark.slow
 @settings(max_examples=3, deadline=None, phases=QUICK)
-@given(st.floats(-3, -2), st.sampled_from([(0,), (-25, 25)]), TURNS, st.sampled_from([1e-3, 1e3]),
+@given(st.floats(-5, -2), st.sampled_from([(0,), (-25, 25)]), TURNS, st.sampled_from([1e-3, 1e3]),
        st.sampled_from([0.0, 10.0, 40.0]))  # fmt: skip
 @example(-3.0, (0,), 0.0, 1.0, 0.0)
 @example(-3.0, (-25, 25), 0.0, 1.0, 0.0)

@@ -173,8 +173,12 @@ def test_pressure_takes_the_deformation_of_a_hardly_curved_side_along(order, cro
 
 
 @pytest.mark.slow
-def test_a_translation_that_slopes_hold_is_off_by_less_than_the_notes_say():
-    """A plate on two round rails, with a load beside one: other meshes let contact follow the rails in other steps."""
+def test_slopes_push_a_plate_on_round_rails_alike_on_any_mesh():
+    """A plate on two rails, with a load beside one: other meshes let contact follow the rails in other steps.
+
+    So its translation was off by 4 %, with an error bar of 0.1 %. It has no amount, and what pushes it is the same.
+    From a quarter of the accuracy asked on this is the verdict.
+    """
     corners = {
         "left half": (-50, 0), "right half": (0, 0), "right": (50, 0), "top right": (50, 12), "loaded": (20, 12),
         "top left": (-10, 12), "left": (-50, 12),
@@ -192,11 +196,11 @@ def test_a_translation_that_slopes_hold_is_off_by_less_than_the_notes_say():
     }  # fmt: skip
     one, two = (bemcontact.solve(bemcontact.problem(spec), accuracy=accuracy) for accuracy in (0.003, 0.001))
     for result in (one, two):
-        (note,) = (note for note in result.notes if "is elsewhere by" in note)
-        part = float(re.findall(r"by (\S+) % of its length", note)[0]) / 100
-        assert "'pin'" in note
-        assert "translations and rotations, do not include this" in note
-        length = next(item.length for item in result.intervals if item.zone == "pin")
-        assert result.contact.motion_names[0] == "translation along (1, 0)"
-        off = abs(one.solution.rigid_amplitudes[0] - two.solution.rigid_amplitudes[0])
-        assert off <= part * length
+        assert "translation along (1, 0)" in result.unknown_motions
+        assert result.accuracy.bar_of("motion", "translation along (1, 0)").value is None
+    push, _ = noted_push(one)
+    assert one.certified
+    assert 0.00025 < push < 0.00075
+    assert two.penetration is not None
+    assert two.penetration.words.startswith("No contact holds the translation along (1, 0): slopes push along it by ")
+    assert share(two.penetration.words) == push
