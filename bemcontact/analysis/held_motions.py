@@ -169,7 +169,7 @@ class LooseMotions:
         first, found = self.first, [*map(self._motion, self._together())]
         lengths = first.contact.lengths_by_zone @ (first.solution.pressure > 0)
         least = first.noted * float(lengths[lengths > 0].min(initial=np.inf))
-        pushed = [it for it in found if it.moved >= least and not it.driven]  # less may be noise of the mesh
+        pushed = [it for it in found if (1 + it.part) * it.moved >= least and not it.driven]  # else noise of the mesh
         refused = [it for it in found if it.driven and (it.part >= NOTHING or it.moved >= (1 - it.part) * least)]
         if refused := [*refused, *(it for it in pushed if it.push >= first.noted)]:
             return self._refused(max(refused, key=lambda it: it.moved)), ()
