@@ -167,10 +167,14 @@ class LooseMotions:
         rolls along a plane: it would turn until the lever of the pressure balances the couple. A motion that slopes
         drive by a small part of the forces, as that of a roller between bodies that bend, is noted.
         """
-        found = [*map(self._motion, self._together())]
-        if refused := [it for it in found if it.far and (it.driven or it.push >= self.first.noted)]:
+        first, found = self.first, [*map(self._motion, self._together())]
+        lengths = first.contact.lengths_by_zone @ (first.solution.pressure > 0)
+        least = first.noted * float(lengths[lengths > 0].min(initial=np.inf))
+        pushed = [it for it in found if (1 + it.part) * it.moved >= least and not it.driven]  # else noise of the mesh
+        refused = [it for it in found if it.driven and (it.part >= NOTHING or it.moved >= (1 - it.part) * least)]
+        if refused := [*refused, *(it for it in pushed if it.push >= first.noted)]:
             return self._refused(max(refused, key=lambda it: it.moved)), ()
-        if said := [it for it in found if it.part >= NOTHING and it.push > DRIVEN]:
+        if said := [it for it in pushed if it.part >= NOTHING and it.push > DRIVEN]:
             most = max(said, key=lambda it: it.push)
             driven = ", and no load drives it" * most.exact
             words = (
@@ -245,14 +249,10 @@ class LooseMotions:
         way = steps / sizes
         goes = self.ways @ way
         most = float(force @ magnitudes(goes)) or 1.0
-        lengths = contact.lengths_by_zone @ (first.solution.pressure > 0)
-        part = float(steps @ self.series.steps @ steps / (steps @ steps))
-        moved = abs(float(np.einsum("n,nx,nx", force, first.moved.motion, goes))) / most
         return _Loose(
             way=way / np.copysign(norm(way), way[abs(way).argmax()]),
-            part=part,
-            moved=moved,
-            far=part >= NOTHING or moved >= (1 - part) * first.noted * float(lengths[lengths > 0].min()),
+            part=float(steps @ self.series.steps @ steps / (steps @ steps)),
+            moved=abs(float(np.einsum("n,nx,nx", force, first.moved.motion, goes))) / most,
             driven=driven and exact,
             exact=exact,
             push=abs(float(self.gained @ way)) / most,
@@ -267,7 +267,6 @@ class _Loose(NamedTuple):
     way : (k,) its amplitudes
     part : by which it goes on
     moved : by which contact has moved along it [L]
-    far : whether nothing holds it, or all steps together are noticeable beside a contact
     driven : whether a load acts along it
     exact : whether this is certain: no line of force has a part along it
     push : force along it at the displaced places, over the force of all contacts that move in it: so it is the
@@ -277,7 +276,6 @@ class _Loose(NamedTuple):
     way: Array
     part: float
     moved: float
-    far: bool
     driven: bool
     exact: bool
     push: float

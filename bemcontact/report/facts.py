@@ -40,7 +40,7 @@ QUALITIES = {"holds": "good", "does not hold": "bad", "not judged": "fair"}
 PLAIN = 0.01, 1000.0
 """Range of numbers that are written without a power of ten."""
 MOST_PLACES = 3
-"""Number of places of the largest pressure that are named."""
+"""Number of places of the largest pressure, and of translations without an amount, that are named."""
 UNRESOLVED = 1e-3
 """Share of the length of contact below which no place in it is resolved."""
 MOST_FIGURES = 10
@@ -129,10 +129,10 @@ def facts(record: JsonObject, units: Units) -> Iterator[tuple[str, str]]:
     for zone, written in forces.items() if len(forces) > 1 or sides else ():
         yield "Resultant", f"of {zone}{f' on {sides[zone][0]}' if sides else ''}: {written}"
     yield from rotations(record)
-    for name in record["unknown_motions"]:
-        of_body = name.startswith(MOVES) and " of the tool " not in name
-        if of_body and record["intervals"] and name not in record["undetermined"]:
-            yield "Translation", f"{name.removeprefix(MOVES)}: {NOT_KNOWN}"
+    if record["intervals"] and (unknown := _unknown_translations(record)):
+        more = f" and {len(unknown) - MOST_PLACES} more" * (len(unknown) > MOST_PLACES)
+        words = NOT_KNOWN if len(unknown) == 1 else NOT_KNOWN.replace("hold it", "hold them")
+        yield "Translation", f"{', '.join(unknown[:MOST_PLACES])}{more}: {words}"
     for tool in record["tools"]:
         yield "Tool", _tool(record, tool, size, pressed, moves, units)
     residuals = ((name, record["residuals"][name]) for name in RESIDUALS)
@@ -167,6 +167,12 @@ def rotations(record: JsonObject) -> Iterator[tuple[str, str]]:
     for j, name in enumerate(record["motion_names"]):
         if turns_a_body(name):
             yield "Rotation", f"{_in_sense(name, record, j).removeprefix(TURNS)}{_angle(record, j)}"
+
+
+def _unknown_translations(record: JsonObject) -> list[str]:
+    """Those of bodies whose amount is not known, although contact holds them as drawn."""
+    names = (name for name in record["unknown_motions"] if name not in record["undetermined"])
+    return [name.removeprefix(MOVES) for name in names if name.startswith(MOVES) and " of the tool " not in name]
 
 
 def rotations_of_cases(records: Mapping[str, JsonObject]) -> Iterator[tuple[str, str]]:

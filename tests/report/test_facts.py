@@ -186,6 +186,27 @@ def test_a_rotation_that_is_not_known_has_no_amount():
     ]
 
 
+def test_translations_that_are_not_known_are_named_and_several_are_counted():
+    """A bearing has two of each roller. Those that contact leaves open have notes of their own, and tools a line."""
+    names = tuple(f"translation along (1, 0) of the body 'roller {i}'" for i in range(5))
+    tool = "translation along (1, 0) of the tool 'punch'"
+    (one,) = facts_of_translations(names[:1])
+    assert (
+        one == "along (1, 0) of the body 'roller 0': not known; only slopes and levers as drawn hold it, which move "
+        "with the body"
+    )
+    (several,) = facts_of_translations((*names, tool))
+    assert several.endswith("'roller 2' and 2 more: not known; only slopes and levers as drawn hold them, which move "
+                            "with the body")  # fmt: skip
+    assert facts_of_translations((tool,)) == []
+    assert facts_of_translations(names, undetermined=names) == []
+
+
+def facts_of_translations(names: tuple[str, ...], **other: Any) -> list[str]:
+    told = facts_of_forces(False, [1.0], unknown_motions=names, **other)
+    return [words for name, words in told if name == "Translation"]
+
+
 def test_a_tool_that_moves_by_an_unknown_amount_has_no_number():
     punch = {
         "name": "punch", "point": [0.0, 0.0], "displacement": None, "rotation": None, "force_of_body": [0.0, -1.0],
