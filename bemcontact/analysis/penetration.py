@@ -327,6 +327,8 @@ def _of_second(gaps: SurfaceGaps, zone: str, found: Inside, allowed: float) -> P
 def _in_words(problem: Problem, zone: str, edge: str, where: str, *, paired: bool) -> str:
     """Say which surface an edge penetrates, why nothing keeps it out, and what to do."""
     body, own = problem.part_of(edge), problem.edges_of(zone)
+    divide = "It has a condition, and such an edge cannot touch: divide it, and"  # to name it would be refused
+    loaded = edge in problem.edge_conditions
     if zone in problem.contacts:
         first, second = problem.sides_of(zone)
         fact = f"'{body}' penetrates '{second if body == first else first}' {where}"
@@ -334,7 +336,8 @@ def _in_words(problem: Problem, zone: str, edge: str, where: str, *, paired: boo
             how = longer(problem, zone)
             advice = f"beyond the part of this edge that may touch in '{zone}'. {how[0].upper()}{how[1:]}."
         else:
-            advice = f"an edge that is not in the contact '{zone}'. Name it in between, with the others of '{body}'."
+            name = f"{divide} name the part without the condition" if loaded else "Name it"
+            advice = f"an edge that is not in the contact '{zone}'. {name} in between, with the others of '{body}'."
         return penetration_in_words(fact, advice, paired=paired)
     who = f"The body '{body}'" if body else "The body"
     fact = f"{who} penetrates the surface of '{zone}' {where}"
@@ -345,9 +348,13 @@ def _in_words(problem: Problem, zone: str, edge: str, where: str, *, paired: boo
             "the edge to the zone."
         )
     else:
+        add = (
+            f"{divide} add the part without the condition to the zone."
+            if loaded
+            else "Add the edge to the zone; if it is in another one, divide it, or state both surfaces as one polyline."
+        )
         advice = (
-            "an edge that is not in that zone. Add the edge to the zone; if it is in another one, divide it, or state "
-            f"both surfaces as one polyline. {ends} a polyline that turns away there"
+            f"an edge that is not in that zone. {add} {ends} a polyline that turns away there"
             f"{', or as a body with rigid: true' if body else ''}."
         )
     return penetration_in_words(fact, advice, paired=paired)

@@ -71,8 +71,9 @@ def read_accuracy(text: Any) -> float:
     value = read_number(written.removesuffix("%"))
     if 0 < value < 1 and "%" not in written:
         return value
-    hint = f"; write {value / 100:.12g} for {value:.12g} percent" if 0 < value < 100 else ""
-    raise typer.BadParameter(f"{EXPECTED_ACCURACY}, found '{written[:40]}'{hint}")
+    percent = value if 0 < value < 100 else 1
+    hint = f"write {percent / 100:.12g} for {percent:.12g} percent"
+    raise typer.BadParameter(f"{EXPECTED_ACCURACY}, found '{written[:40]}'; {hint}")
 
 
 FigureOption = Annotated[

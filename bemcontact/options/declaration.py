@@ -117,7 +117,7 @@ def ensure_whole_fields(options: Any) -> None:
             object.__setattr__(options, item.name, whole_number(value, item.name, least))
 
 
-EXPECTED_ACCURACY = "expected a relative accuracy between 0 and 1, such as 0.01 for 1 percent"
+EXPECTED_ACCURACY = "expected a relative accuracy between 0 and 1"
 """Beginning of the error of an accuracy that is something else."""
 
 

@@ -99,7 +99,9 @@ def _accuracy(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
     try:
         return handler(value)
     except ValidationError:
-        raise invalid(f"{EXPECTED_ACCURACY}, or null for none; found {shown(value)}") from None
+        raise invalid(
+            f"{EXPECTED_ACCURACY}, such as 0.01 for 1 percent, or null for none; found {shown(value)}"
+        ) from None
 
 
 class Problem(StatedBodies):

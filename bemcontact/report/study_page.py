@@ -52,11 +52,12 @@ def study_verdicts(study: StudyTable) -> tuple[Verdict, Verdict]:
     if bad:
         words = _sentence(next(row for row in rows if not row.certified))
     equations = Verdict("Equations", "bad" if bad else "good", word, words)
-    return equations, _mesh_verdict([row for row in rows if row.status is not MemberStatus.FAILED])
+    done = [row for row in rows if row.status is not MemberStatus.FAILED]
+    return equations, _mesh_verdict(done, "Each member" if len(done) == total else "Each member that has a result")
 
 
-def _mesh_verdict(rows: list[MemberRow]) -> Verdict:
-    """Verdict on the meshes of the members that have a result."""
+def _mesh_verdict(rows: list[MemberRow], each: str) -> Verdict:
+    """Verdict on the meshes of the members that have a result, and how all of them are called."""
     unmet = [row for row in rows if row.met is False]
     unknown = [row for row in rows if row.met is None]
     if unmet:
@@ -66,7 +67,7 @@ def _mesh_verdict(rows: list[MemberRow]) -> Verdict:
         return Verdict("Mesh", "fair", word, "No accuracy is asked for, or errors were not estimated.")
     worst = max((row.mesh_error or 0.0 for row in rows), default=0.0)
     word = f"error at most {error_percent(worst)}" if rows else "no member has a result"
-    return Verdict("Mesh", "good" if rows else "bad", word, "Each member is as accurate as was asked." if rows else "")
+    return Verdict("Mesh", "good" if rows else "bad", word, f"{each} is as accurate as was asked." if rows else "")
 
 
 def _left_out(study: StudyTable) -> str:

@@ -214,8 +214,8 @@ def _range(keys: str, first: str, last: str, count: str) -> list[float]:
             f"{keys}: expected a:b:n, two numbers and how many values; found {first}:{last}:{count}"
         ) from None
     if not np.isfinite([start, end]).all() or number < 2 or start == end:
-        reason = "a range has two different finite ends and at least 2 values"
-        raise OptionError(f"{keys}: {reason}; found {first}:{last}:{count}")
+        reason = "a range a:b:n has two different finite ends and at least 2 values"
+        raise OptionError(f"{keys}: {reason}; found {first}:{last}:{count}; write one value by itself")
     if number > MOST_MEMBERS:
         raise OptionError(f"{keys}: at most {MOST_MEMBERS} values are possible; found {count}")
     return [float(f"{value:.15g}") for value in np.linspace(start, end, number)]

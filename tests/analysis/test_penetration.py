@@ -1,5 +1,7 @@
 """Penetration of rigid surfaces where there are no contact points: depth, place, and what is tolerated."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
@@ -10,6 +12,7 @@ from bemcontact.analysis.compare import mesh_study
 from bemcontact.assessment.penetration import ROUND_OFF, TOLERATED, Misfit
 from bemcontact.bem.discretization import body_of
 from bemcontact.bem.surface_gaps import FLUSH, NODES, surface_gaps
+from bemcontact.errors import ProblemError
 from bemcontact.options import ComparisonOptions
 from bemcontact.problems import Problem
 
@@ -79,6 +82,32 @@ def test_depth_of_a_block_that_bulges_into_a_wall(pressure, gap, turn, size):
     elif depth < 0:
         assert result.certified
         assert result.penetration is None
+
+
+@pytest.mark.parametrize("loaded", [False, True])
+@pytest.mark.parametrize("kind", ["groove of a zone", "groove of a body"])
+def test_an_edge_with_a_condition_is_not_advised_to_touch(kind: str, loaded: bool):
+    """A problem that names such an edge as one that may touch is refused: the advice is to divide the edge."""
+    press = {"top": {"pressure": 40.0}, **{name: {"pressure": 1e-3} for name in ("right", "upper") if loaded}}
+
+    def problem(*touching: str):
+        if kind == "groove of a zone":
+            return seal(conditions=press, edges=touching)
+        data = seal(conditions=press).to_dict()
+        parts = {key: data.pop(key) for key in ("material", "boundary", "conditions")}
+        corners = [(-5, 0), (-5, -1), (SIDE + 1, -1), (SIDE + 1, 20), (SIDE + 0.02, 20), (SIDE + 0.02, 0)]
+        around = [{"name": f"side {i}", "start": corner} for i, corner in enumerate(corners)]
+        data["bodies"] = {"block": parts, "groove": {"rigid": True, "boundary": {"outer": around}}}
+        data["contact_zones"] = {"symmetry": {**data["contact_zones"]["symmetry"], "edges": "block/left"}}
+        data["contacts"] = {"groove": {"between": [[f"block/{edge}" for edge in touching], "groove"]}}
+        return Problem(**data)
+
+    found = solve(problem("bottom"), "complementarity").penetration
+    assert found is not None
+    assert ("divide it, and" in found.words and "the part without the condition" in found.words) == loaded
+    assert ("Name it in between" in found.words or "Add the edge to the zone" in found.words) != loaded
+    with pytest.raises(ProblemError, match=r"cannot touch|can have no condition") if loaded else nullcontext():
+        problem("bottom", found.edge.removeprefix("block/"))
 
 
 @pytest.mark.parametrize("edges", [("bottom", "right", "upper"), ("bottom", "right")])

@@ -311,10 +311,10 @@ def test_a_penalty_that_is_no_number_is_told_what_is_expected(value: str):
 @pytest.mark.parametrize(
     ("value", "expected"),
     [
-        ("5", "such as 0.01 for 1 percent, found '5'; write 0.05 for 5 percent"),
+        ("5", "between 0 and 1, found '5'; write 0.05 for 5 percent"),
         ("0.5 %", "found '0.5 %'; write 0.005 for 0.5 percent"),
-        ("0", "such as 0.01 for 1 percent, found '0'\n"),
-        ("200%", "found '200%'\n"),
+        ("0", "between 0 and 1, found '0'; write 0.01 for 1 percent\n"),
+        ("200%", "found '200%'; write 0.01 for 1 percent\n"),
         ("fine", "expected a number, found 'fine'"),
     ],
 )

@@ -56,6 +56,9 @@ def test_one_member_that_does_not_hold_changes_the_verdict(second: MemberRow, qu
     verdicts = study_verdicts(both)
     assert tuple(item.quality for item in verdicts) == quality
     assert words in " ".join(f"{item.word} {item.words}" for item in verdicts)
+    if verdicts[1].quality == "good":  # only of members that have a result
+        with_result = " that has a result" * (second.status is MemberStatus.FAILED)
+        assert verdicts[1].words == f"Each member{with_result} is as accurate as was asked."
     assert (study_shortfall(both) == "") is (quality == ("good", "good"))
     page = read(render(both, {}, None)).text
     assert words in page

@@ -43,7 +43,7 @@ def test_written_axes_are_read(text: str, keys: str, values: list[Any]):
         ("variant=fine,,coarse", "a value is missing"),
         ("a=1:2", "expected a:b:n"),
         ("a=1:2:x", "two numbers and how many"),
-        ("a=1:2:1", "at least 2"),
+        ("a=1:2:1", "at least 2 values; found 1:2:1; write one value by itself"),
         ("a=1:1:4", "two different"),
         ("a=1:inf:4", "finite"),
         ("a=[1", "bracket"),
