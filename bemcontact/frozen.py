@@ -20,6 +20,8 @@ class _Fields(NamedTuple):
     """Those of all fields in their order; MISSING where there is none."""
     factories: dict[str, Callable[[], Any]]
     required: frozenset[str]
+    finished: bool
+    """Whether ``__post_init__`` follows."""
 
 
 @dataclass_transform(eq_default=False, kw_only_default=True, frozen_default=True, field_specifiers=(dataclasses.field,))
@@ -47,13 +49,13 @@ def _made(kind: Any, methods: dict[str, Any]) -> Any:
     factories = {item.name: item.default_factory for item in items if item.default_factory is not MISSING}
     defaults = {item.name: item.default for item in items}
     required = frozenset(name for name, value in defaults.items() if value is MISSING) - factories.keys()
-    kind._fields_of_constructor = _Fields(defaults, factories, required)
+    kind._fields_of_constructor = _Fields(defaults, factories, required, hasattr(kind, "__post_init__"))
     return kind
 
 
 def _init(self: Any, /, **values: Any) -> None:
     """Set all fields in their order."""
-    defaults, factories, required = self._fields_of_constructor
+    defaults, factories, required, finished = self._fields_of_constructor
     own = self.__dict__
     own.update(defaults)
     own.update(values)
@@ -62,13 +64,13 @@ def _init(self: Any, /, **values: Any) -> None:
     for name, factory in factories.items():
         if name not in values:
             own[name] = factory()
-    if hasattr(self, "__post_init__"):
+    if finished:
         self.__post_init__()
 
 
 def _wrong_fields(kind: Any, values: dict[str, Any]) -> TypeError:
     """Name the fields that do not exist, else those that are missing."""
-    defaults, _, required = kind._fields_of_constructor
+    defaults, _, required, _ = kind._fields_of_constructor
     unknown, missing = values.keys() - defaults, required - values.keys()
     what, names = ("an unexpected", unknown) if unknown else ("no", missing)
     shown = ", ".join(repr(name) for name in (*defaults, *values) if name in names)
