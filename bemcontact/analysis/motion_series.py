@@ -76,7 +76,7 @@ class MotionSeries:
         return unseen_ways(self.along_lines, UNRESISTED)
 
     def split(self, least: float) -> tuple[Array, Array, Array]:
-        """Schur form (k, k) of T, and its orthonormal vectors of eigenvalues from the `least` > 0 on, and the others."""
+        """Schur form (k, k) of T, and its orthonormal vectors of eigenvalues from `least` > 0 on, and the others."""
         if not self.steps.any():
             return self.steps, self.steps[:, :0], np.eye(len(self.steps))
         form, ways, count = scipy.linalg.schur(self.steps, sort=lambda real, imaginary=0.0: real >= least)
