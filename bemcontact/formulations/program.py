@@ -15,7 +15,7 @@ from bemcontact.cached import cached_property
 from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.formulations.local_solver.factorizations import inertia
 from bemcontact.formulations.local_solver.minimize import minimize_qp
-from bemcontact.formulations.local_solver.result import QPOptions, QPResult
+from bemcontact.formulations.local_solver.result import QPOptions, QPResult, QPStatus
 from bemcontact.formulations.scaling import ScaledContact, scale
 from bemcontact.frozen import frozen
 from bemcontact.options import Rows
@@ -167,7 +167,9 @@ def minimize_program(program: Program, start: Array, max_iterations: int | None)
     """
     start = np.maximum(start, program.lower)
     if len(program.lower) > WORTH_ELIMINATION and program.gives_pressure:
-        return _minimize_over_gaps(program, start, max_iterations)
+        result = _minimize_over_gaps(program, start, max_iterations)
+        if result.status is not QPStatus.INFEASIBLE:  # the rows of a singular compliance are round-off: all decide
+            return result
     E, e = program.penalized.matrix, program.penalized.right
     A, b = program.equations.matrix, program.equations.right
     n, (m, N), root = len(program.weights), E.shape, np.sqrt(program.penalty)

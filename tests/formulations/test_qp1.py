@@ -126,6 +126,16 @@ def test_eliminated_pressures_change_no_answer(monkeypatch):
     test_iteration_limit_is_named()
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_rows_that_are_round_off_are_not_said_to_have_no_solution(monkeypatch, seed):
+    """Of a compliance of rank 12 with 30 points: contact has a solution, but stiffness rows do not exist."""
+    monkeypatch.setattr(program, "WORTH_ELIMINATION", 0)
+    B = np.random.default_rng(seed).standard_normal((30, 12))
+    problem = CondensedContact.from_compliance(B @ B.T, -B @ B.sum(axis=0))
+    assert complementarity.solve(problem).status is Status.SOLVED
+    assert qp1.solve(problem, SolveOptions.of("qp1", polish=False)).status is not Status.INFEASIBLE
+
+
 @pytest.mark.parametrize("k", [0, 2])
 @pytest.mark.parametrize(("length", "stress"), [(1e-3, 1e6), (1e3, 1e-6), (0.7, 2.1e11)])
 @pytest.mark.parametrize("formulation", ["qp1", "qp2"])
