@@ -21,6 +21,8 @@ COMPUTABLE = 1e-75, 1e75
 """Sizes of compliance, displacement and pressure of which products and squares are neither zero nor infinite."""
 UNSEEN = 1e-9
 """Lever over the extent of contact up to which points see no turn."""
+TURNS = "rotation "
+"""First word of a free rotation; one about a far center is a translation with a small turn."""
 
 
 class ContactScales(NamedTuple):
@@ -93,6 +95,11 @@ def _interference(offset: Array, terms: Array, rigid_motions: Array) -> float:
     cost, bounds = np.append(np.zeros(k), 1.0), [(None, None)] * k + [(0, None)]
     optimum = scipy.optimize.linprog(cost, A_ub=-columns, b_ub=q / widest, bounds=bounds)
     return widest * optimum.fun if optimum.success and optimum.fun > INTERFERENCE else 0.0
+
+
+def turns_a_body(motion: str) -> bool:
+    """Whether a free motion, by its name, is the rotation of a body."""
+    return motion.startswith(TURNS) and " of the tool " not in motion
 
 
 def angle_of_round_off(points: Array, normals: Array, pressed: BoolArray) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from bemcontact.assessment.accuracy import bar_of_largest
-from bemcontact.contact.free_motions import angle_of_round_off
+from bemcontact.contact.free_motions import TURNS, angle_of_round_off, turns_a_body
 from bemcontact.problems import Units
 from bemcontact.report.bars import (
     NOTHING,
@@ -31,7 +31,6 @@ from bemcontact.report.formatting import (
     zero_if_negligible,
 )
 from bemcontact.report.peak_places import LEVEL, equal_peaks, level_zones
-from bemcontact.studies.outputs import TURNS, turns_a_body
 
 RESIDUALS = ("penetration", "tension", "complementarity", "equilibrium", "force_balance")
 """Residuals that are listed."""

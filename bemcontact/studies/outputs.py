@@ -9,7 +9,7 @@ import numpy as np
 from bemcontact.analysis.result import Result
 from bemcontact.assessment.accuracy import ErrorBar
 from bemcontact.checks.arguments import texts
-from bemcontact.contact.free_motions import angle_of_round_off
+from bemcontact.contact.free_motions import angle_of_round_off, turns_a_body
 from bemcontact.contact.stress import INSIDE, ON_BOUNDARY, LargestStresses, NoPeak
 from bemcontact.errors import OptionError
 from bemcontact.frozen import frozen_value
@@ -27,8 +27,6 @@ OF_MOVERS = ("motion", "rotation")
 """Outputs of each tool and free motion, as ``motion.press``; ``rotation.block`` has those of a body."""
 FREE = ("translation", "rotation")
 """First words of the free motions."""
-TURNS = "rotation "
-"""First word of a free rotation; one about a far center is a translation with a small turn."""
 ROUND_OFF = 1e-9
 """Rotation times coordinates, relative to displacements, that is round-off; also pressure, relative to the peak."""
 OF_STRESS = ("von_mises", "max_shear")
@@ -143,11 +141,6 @@ def _of_rotations(result: Result) -> Iterator[tuple[str, Reading]]:
     for name, angle in zip(contact.motion_names, angles.tolist(), strict=True):
         if turns_a_body(name):
             yield f"rotation.{_without_center(name)}", Reading(value=0.0 if abs(angle) <= least else angle)
-
-
-def turns_a_body(motion: str) -> bool:
-    """Whether a free motion, by its name, is the rotation of a body."""
-    return motion.startswith(TURNS) and " of the tool " not in motion
 
 
 def _without_center(mover: str) -> str:
