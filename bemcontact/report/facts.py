@@ -45,7 +45,7 @@ UNRESOLVED = 1e-3
 MOST_FIGURES = 10
 """Figures of the ends of a contact far from the origin; five tell all others apart."""
 MOVES = "translation "
-"""Words in the name of a translation."""
+"""First word of a free translation."""
 NOT_KNOWN = "not known; only slopes and levers as drawn hold it, which move with the body"
 """Words for the angle of a body that turns on and on."""
 UNKNOWN_AMOUNT = "an amount that is not known"
