@@ -83,8 +83,8 @@ class Units(SpecModel):
             return
         stiffer, softer = f"stiffer than diamond ({DIAMOND:g} Pa)", "softer than a body that keeps its shape"
         than = "softer than rubber" if of_metal else stiffer if found > STIFFEST else softer
-        stated = f" of {young_modulus:g} {self.stress}" if self.stress != "Pa" else ""
+        stated = f" ({young_modulus:g} {self.stress})" if self.stress != "Pa" else ""
         yield (
-            f"Young's modulus{stated} is {found:.3g} Pa, {than}: check it, and the labels of the units; in "
+            f"Young's modulus is {found:.3g} Pa{stated}, {than}: check it, and the labels of the units; in "
             f"{self.stress} steel has {STEEL / unit:.3g}"
         )
