@@ -1,6 +1,7 @@
 """Run all benchmarks of speed and write one page, as Markdown and as JSON.
 
     python tests/benchmarks/run.py [--only SECTION ...] [--quick] [--out FOLDER] [--instances FOLDER]
+                                  [--earlier COMMIT]
 
 Each section runs in a process of its own. If one fails or is interrupted, the page says so and has the others. With
 `--only`, the other sections are kept from the run before in the same folder, if machine and versions are the same.
@@ -28,6 +29,7 @@ SECTIONS = {
     "condensation": "speed_of_condensation",
     "threads": "speed_on_threads",
     "solve": "speed_of_solve",
+    "earlier": "speed_over_earlier",
     "formulations": "speed_of_formulations",
     "paths": "speed_of_paths",
     "finite_elements": "speed_of_finite_elements",
@@ -143,7 +145,7 @@ def run_all(names: list[str], folder: Path, settings: Settings) -> Run:
 def arguments_of(settings: Settings) -> list[str]:
     """The settings for the command line."""
     folder = ["--instances", str(settings.instances)] if settings.instances else []
-    return ["--quick", *folder] if settings.quick else folder
+    return [*(["--quick"] if settings.quick else []), *folder, "--earlier", settings.earlier]
 
 
 @contextmanager
@@ -167,13 +169,17 @@ def arguments() -> argparse.Namespace:
         "--out", type=Path, default=default, metavar="FOLDER", help="of the page, %(default)s by default"
     )
     parser.add_argument("--instances", type=Path, metavar="FOLDER", help="quadratic programs (.npz) for local_solver")
+    parser.add_argument(
+        "--earlier", default=Settings.earlier, metavar="COMMIT",
+        help="for the section of this name, by default %(default)s"
+    )  # fmt: skip
     parser.add_argument("--into", type=Path, help=argparse.SUPPRESS)  # one section, in this process
     return parser.parse_args()
 
 
 def main() -> int:
     given = arguments()
-    settings = Settings(quick=given.quick, instances=given.instances)
+    settings = Settings(quick=given.quick, instances=given.instances, earlier=given.earlier)
     if given.into:
         measured(given.only[0], given.into, settings)
         return 0

@@ -105,10 +105,12 @@ class Settings:
     ----------
     quick : fewer and smaller problems
     instances : folder with quadratic programs (.npz) for the local solver, besides those that are made
+    earlier : commit that today's code is compared with; by default the last one before the work on speed
     """
 
     quick: bool = False
     instances: Path | None = None
+    earlier: str = "f00bb2f3"
 
 
 @dataclass(frozen=True, kw_only=True)

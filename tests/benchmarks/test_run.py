@@ -12,7 +12,9 @@ import local_solver
 import numpy as np
 import pytest
 import run
+import speed_cylinder
 import speed_of_paths
+import speed_over_earlier
 import timing
 from peers import Answer, Claim, Peer
 from qp_instance import stated
@@ -20,6 +22,7 @@ from run import SECTIONS, before, outcome, write
 from speed_page import RUN, SECTION, Outcome, Run, Section, Settings, Table, Target, markdown
 from timing import MOST_AT_ONCE, Spread, children_time, in_turns, ratio
 
+import bemcontact
 from bemcontact.contact.condensed_contact import CondensedContact
 
 GOOD = Section(
@@ -74,8 +77,9 @@ def test_a_section_that_did_not_run_is_told():
 
 
 def test_the_settings_reach_the_process_of_a_section(tmp_path):
-    assert run.arguments_of(Settings()) == []
-    assert run.arguments_of(Settings(quick=True, instances=tmp_path)) == ["--quick", "--instances", str(tmp_path)]
+    assert run.arguments_of(Settings(earlier="abc")) == ["--earlier", "abc"]
+    given = ["--quick", "--instances", str(tmp_path), "--earlier", "abc"]
+    assert run.arguments_of(Settings(quick=True, instances=tmp_path, earlier="abc")) == given
 
 
 def test_a_row_that_does_not_fit_its_columns_is_an_error():
@@ -253,3 +257,17 @@ def test_a_path_is_compared_with_a_solve_at_each_breakpoint():
 def test_each_benchmark_finds_what_it_imports(path: Path):
     """They are run by hand: without this a name that was moved would be missed."""
     importlib.import_module(path.stem)
+
+
+@pytest.mark.slow
+def test_a_worker_has_the_code_of_its_folder(tmp_path):
+    """It writes the compliance that this process finds, and adds up its time; what is not there is an error."""
+    with speed_over_earlier.Worker(speed_over_earlier.ROOT, "NumPy") as worker:
+        worker("condense", 1, tmp_path / "values.npy")
+        assert 0 < worker.spent < 60
+    with speed_cylinder.assembled_by("NumPy"):
+        contact = bemcontact.condense(speed_cylinder.cylinder(1))
+    np.testing.assert_array_equal(np.load(tmp_path / "values.npy"), contact.compliance)
+    assert bemcontact.solve(speed_cylinder.cylinder(1)).degrees_of_freedom == speed_over_earlier.UNKNOWNS
+    with speed_over_earlier.Worker(tmp_path, "NumPy") as worker, pytest.raises(RuntimeError, match="cannot solve"):
+        worker("solve", 1)

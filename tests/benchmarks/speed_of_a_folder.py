@@ -1,0 +1,38 @@
+"""A process with the code of one folder: it does what each line of its input asks for, and tells its processor time.
+
+    python speed_of_a_folder.py FOLDER NumPy|numba
+
+A line is a mapping as JSON: `what` is "condense" or "solve", `refine` is the number of parts into which each element of
+the stated mesh is cut, and `into` is a file (.npy) for compliance or pressure, or null.
+"""
+
+import importlib
+import json
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+
+def work(folder: Path, code: str) -> None:
+    """Do all that is asked for."""
+    sys.path.insert(0, str(folder))
+    sys.modules["numba"] = importlib.import_module("numba") if code == "numba" else None  # None: as if not installed
+    program = importlib.import_module("bemcontact")
+    if not Path(program.__file__).is_relative_to(folder):
+        raise ImportError(f"bemcontact is that of {program.__file__}, not of {folder}")
+    model = program.load(folder / "models" / "cylinder_on_plane.yaml", variant="stated mesh")
+    for line in sys.stdin:
+        asked = json.loads(line)
+        problem = model.refined(asked["refine"])
+        begin = time.process_time()
+        result = getattr(program, asked["what"])(problem)
+        taken = time.process_time() - begin
+        if asked["into"]:
+            np.save(asked["into"], result.compliance if asked["what"] == "condense" else result.solution.pressure)
+        print(taken, flush=True)
+
+
+if __name__ == "__main__":
+    work(Path(sys.argv[1]), sys.argv[2])
