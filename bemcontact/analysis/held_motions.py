@@ -77,7 +77,7 @@ class MovingBody:
         found, arms = amounts(body, amplitudes, moved), np.where(turns(body), body.seen.arms, 1.0)
         known = KnownMotions.of(contact, solution, np.where(turns(body), found, 0.0), held, turns(body))
         most = np.unravel_index(magnitudes(moved).argmax(), moved.shape[:2])
-        ways = body.seen.displacement(body.mesh)[body.mesh.elements[most]]
+        ways = body.seen_ways[body.mesh.elements[most]]
         unsure = abs(norm(moved[most]) - norm(moved[most] - ways @ unheld @ (found * arms)))
         return cls(body=body, contact=contact, known=known, errors=errors / arms, unsure=unsure)
 
@@ -126,6 +126,8 @@ def _held(series: MotionSeries, amplitudes: Array, part: float) -> tuple[BoolArr
     From amplitudes (k,), and the `part` by which a change of one is noted. The errors are zero where nothing else
     holds. Also the part (k, k) of amplitudes along the ways that nothing else holds.
     """
+    if not series.steps.any():
+        return np.ones(len(amplitudes), bool), np.zeros(len(amplitudes)), np.zeros((len(amplitudes), len(amplitudes)))
     form, free, others = series.split(MOVES_ON)
     count, sizes = free.shape[1], series.sizes
     known = form[count:, count:]
@@ -168,6 +170,8 @@ class LooseMotions:
         drive by a small part of the forces, as that of a roller between bodies that bend, is noted.
         """
         first, found = self.first, [*map(self._motion, self._together())]
+        if not found:
+            return None, ()
         lengths = first.contact.lengths_by_zone @ (first.solution.pressure > 0)
         least = first.noted * float(lengths[lengths > 0].min(initial=np.inf))
         pushed = [it for it in found if (1 + it.part) * it.moved >= least and not it.driven]  # else noise of the mesh

@@ -115,7 +115,7 @@ class _Pairs(NamedTuple):
     def of(cls, gaps: SurfaceGaps, body: Body, contact: CondensedContact) -> "_Pairs":
         """Both sides of the contact points of a body."""
         seen, points = body.seen, body.points
-        at, radius = seen.displacement(body.mesh), seen.radius
+        at, radius = body.seen_ways, seen.radius
         turn = np.zeros((len(at), len(seen)))
         for number, part in enumerate(body.mesh.parts):
             turn[part.nodes] = seen.coefficients[:, 3 * number + 2] / radius

@@ -119,7 +119,7 @@ def _pairs_changed(first: MovedContact, body: Body, unknown: Array) -> Judgement
     are `unknown` are left out.
     """
     gaps, contact, pressure, said = first.gaps, first.contact, first.solution.pressure, list[str]()
-    displacement = gaps.state.displacement - (body.seen.displacement(body.mesh) @ unknown)[body.mesh.elements]
+    displacement = gaps.state.displacement - (body.seen_ways @ unknown)[body.mesh.elements]
     for zone, found in motions_of_pairs(body, contact, pressure, displacement).items():
         surface = gaps.surfaces[zone]
         if not isinstance(surface, BodySurface):

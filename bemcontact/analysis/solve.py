@@ -341,10 +341,11 @@ def assessed(
                 deepest, said = misfit(gaps, condensation.body, contact, solution, where, infinite, series)
             body = None if condensation is None else condensation.body
             said += tuple(diagnostics(contact, solution, where, body, met=prepared.accuracy.met is True))
-        motions = KnownMotions.of(contact, solution)
         if boundary is not None and condensation is not None:
             moving = MovingBody.of(condensation, boundary, solution, series)
             motions, accuracy = moving.known, moving.judged(accuracy)
+        else:
+            motions = KnownMotions.of(contact, solution)
         if condensation is not None and not certificate.certified:
             said += tuple(sides_of_one_body(condensation.body.problem))
         notes = (*contact.notes, *solution.notes, *said)

@@ -31,7 +31,10 @@ MANY = 3
 """Motions held at zero up to which each has a note of its own."""
 ROUND_OFF = 1e-14
 """Normal displacement, over that of the motion, of a point that does not see it."""
-OF_ALL_CASES = ("unit_pressures", "shear_moduli", "pinned_motions", "pinned", "seen_motion", "seen_load", "with_bodies")
+OF_ALL_CASES = (
+    "unit_pressures", "shear_moduli", "seen_ways", "pinned_motions", "pinned", "seen_motion", "seen_load",
+    "with_bodies",
+)  # fmt: skip
 """Properties of a body that do not depend on the load case that acts."""
 
 
@@ -114,6 +117,11 @@ class Body:
         if not len(self.unseen):
             return self.seen
         return self.seen.with_coefficients(np.concatenate([self.seen.coefficients, self.unseen.coefficients]))
+
+    @cached_property
+    def seen_ways(self) -> Array:
+        """Displacement (N, 2, k) of all nodes in each of the motions seen."""
+        return self.seen.displacement(self.mesh)
 
     @cached_property
     def factors(self) -> Array:

@@ -29,8 +29,10 @@ def amounts(body: Body, amplitudes: Array, displacement: Array) -> Array:
     seen = body.seen
     turning = np.isfinite(seen.arms)
     found = amplitudes / np.where(turning, seen.arms, 1.0) + 0.0
-    displacement = body.without_motions(displacement, body.pinned_motions)
-    for motion, part in _of_elastic_contacts(body):
+    among_elastic = [*_of_elastic_contacts(body)]
+    if among_elastic:
+        displacement = body.without_motions(displacement, body.pinned_motions)
+    for motion, part in among_elastic:
         mesh, elements, _ = body.mesh.parts[part]
         weights, moved = mesh.tributary.ravel(), displacement[elements].reshape(-1, 2)
         x, y, turn = seen.of_bodies[motion, 3 * part : 3 * part + 3].tolist()
@@ -52,7 +54,7 @@ def _of_elastic_contacts(body: Body) -> Iterator[tuple[int, int]]:
     surfaces = {name: zone.surface for name, zone in problem.zones.items()}
     pairs = [name for name, it in surfaces.items() if isinstance(it, BodySurface) and it.first]
     touching = {names.index(name) for pair in pairs for name in problem.touching_bodies(pair)}
-    for motion, row in enumerate(seen.coefficients):
+    for motion, row in enumerate(seen.coefficients if touching else ()):
         coefficients = row.reshape(-1, 3)  # of each body, then of each tool
         moved = abs(coefficients[:, 2]) if np.isfinite(seen.arms[motion]) else np.hypot(*coefficients[:, :2].T)
         most = indices(moved >= (1 - ALIKE) * moved.max()).tolist()

@@ -397,7 +397,7 @@ def _boundaries(
             u, t = part.fields(z, acting)
             displacement[part.mesh.nodes] += u
             traction[part.mesh.elements] = t
-        displacement += body.seen.displacement(body.mesh) @ amplitude
+        displacement += body.seen_ways @ amplitude
         for element, local, point, vectors in _pressed(body):
             at, by_point = 3 * element + local, pressure[point]
             for axis in (0, 1):

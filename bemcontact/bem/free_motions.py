@@ -12,6 +12,7 @@ from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.rigid_motions import RigidMotions, echelon
 from bemcontact.bem.unit_pressures import UnitPressures
+from bemcontact.cached import cached_property
 from bemcontact.frozen import frozen
 from bemcontact.problems.contact_zone import ToolAction
 from bemcontact.problems.problem import Problem
@@ -236,7 +237,7 @@ class FreeMotions:
         largest = np.hypot(self.coefficients[:, ::3], self.coefficients[:, 1::3]).max(axis=1, initial=UNSEEN)
         return self.combined(np.diag(np.where(np.isinf(self.arms), 1 / largest, self.arms)))
 
-    @property
+    @cached_property
     def arms(self) -> Array:
         """Distance (k,) [L] from the center of a rotation at which a motion moves by its amplitude; else infinite."""
         turns = (self._largest_turn(motion) if self.turns(motion) else 0.0 for motion in range(len(self)))
