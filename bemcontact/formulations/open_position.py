@@ -26,6 +26,13 @@ OPEN = 1e-6
 """Amplitude in U that a motion needs to count as open: round-off leaves less where it is locked."""
 
 
+def unheld_motions(contact: CondensedContact, pressure: Array, closed: BoolArray | None = None) -> Array:
+    """Combinations (k, j) of free motions that move no point with pressure (n,), nor one that is `closed` (n,)."""
+    pressed = pressure > VANISHED * pressure.max(initial=0.0)
+    held = pressed if closed is None else pressed | closed
+    return unseen_ways((contact.rigid_motions / motion_sizes(contact))[held], UNSEEN)
+
+
 def with_chosen_position(
     contact: CondensedContact, solution: ContactSolution, closed: BoolArray | None = None
 ) -> ContactSolution:
@@ -36,12 +43,11 @@ def with_chosen_position(
     """
     if not contact.free_motions or not contact.peak(solution.pressure):
         return solution
-    pressed = solution.pressure > VANISHED * solution.pressure.max()
-    held = pressed if closed is None else pressed | closed
-    motions = unseen_ways((contact.rigid_motions / motion_sizes(contact))[held], UNSEEN)
+    motions = unheld_motions(contact, solution.pressure, closed)
     if not motions.size:
         return solution
-    scaled = scale(contact)
+    pressed, scaled = solution.pressure > VANISHED * solution.pressure.max(), scale(contact)
+    held = pressed if closed is None else pressed | closed
     p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
     if not scaled.residual(p, a) <= ACCEPTED:
         return solution

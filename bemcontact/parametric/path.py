@@ -16,7 +16,7 @@ from bemcontact.contact.load_cases import Change, LoadCases, Pinned
 from bemcontact.contact.solution import ContactSolution, Status
 from bemcontact.errors import ProblemError
 from bemcontact.formulations import complementarity
-from bemcontact.formulations.open_position import note_of_open, with_chosen_position
+from bemcontact.formulations.open_position import note_of_open, unheld_motions, with_chosen_position
 from bemcontact.formulations.scaling import scale, scaled_change, scaled_point, unscaled
 from bemcontact.frozen import frozen
 from bemcontact.options import FormulationName
@@ -396,8 +396,9 @@ def _with_positions(path: LoadPath) -> LoadPath:
     At a breakpoint the points that are pressed beside it stay closed, so that the states between are linear.
     """
     leaves_open, ranges = np.zeros(len(path.open), bool), dict[str, list[Pair]]()
+    midway = (path.pressure[1:] + path.pressure[:-1]) / 2
     for i, (begin, end) in enumerate(pairwise(path.parameter.tolist())):
-        if begin < end:
+        if begin < end and unheld_motions(path.start, midway[i]).size:
             middle = path.at((begin + end) / 2)
             chosen = with_chosen_position(path.contact((begin + end) / 2), middle)
             leaves_open[i] = chosen is not middle
