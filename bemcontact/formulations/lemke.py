@@ -59,6 +59,8 @@ def lemke(M: Array, q: Array, covering: Array | None = None, limit: int | None =
     n = len(q)
     if (q >= 0).all():
         return LemkeEnd(status=Status.SOLVED, active=np.zeros(n, bool), covers=())
+    if n == 1 and M[0, 0] > 0:
+        return LemkeEnd(status=Status.SOLVED, active=np.ones(1, bool), covers=(0.0,))
     factors = equilibrating(M)
     M, q = factors[:, None] * M * factors, factors * q
     unit = float(powers_of_two(np.abs(q).max()))

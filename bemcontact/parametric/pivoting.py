@@ -134,7 +134,7 @@ class Tangent:
     @cached_property
     def open_motions(self) -> Array:
         """An orthonormal basis (k, ·) of the motions that move no point of S and W."""
-        return self.still(np.append(self.strong, self.weak))
+        return self.still(np.append(self.strong, self.weak)) if self._unresisted.size else self._unresisted
 
     def still(self, points: IntArray) -> Array:
         """An orthonormal basis (k, ·) of the motions that move none of some points."""
