@@ -369,7 +369,7 @@ def test_zeros_that_rounding_left_are_taken_away(seed, n):
 
 @pytest.mark.parametrize("M", [2.0, 1e-300, 1e300])
 def test_one_variable_needs_one_pivot(M: float):
-    """z = -q/M is positive for positive M, however small it is; for q >= 0 it is zero."""
+    """Then z = -q/M is positive for positive M, however small it is; for q >= 0 it is zero."""
     end = lemke(np.array([[M]]), np.array([-1.0]))
     assert (end.status, end.active.tolist(), end.pivots) == (Status.SOLVED, [True], 1)
     assert lemke(np.array([[M]]), np.array([1.0])).active.tolist() == [False]

@@ -45,7 +45,9 @@ def test_units_of_stress_agree_with_each_other():
         assert Units(length=length, force=force).pascals == pytest.approx(pascals, rel=1e-6)
 
 
-@pytest.mark.parametrize(("modulus", "found"), [(206e9, "2.06e+17 Pa (2.06e+11 MPa), stiffer than diamond"), (210e3, None)])
+@pytest.mark.parametrize(
+    ("modulus", "found"), [(206e9, "2.06e+17 Pa (2.06e+11 MPa), stiffer than diamond"), (210e3, None)]
+)
 def test_check_and_solve_note_a_modulus_of_other_units(modulus: float, found: str | None):
     problem = bemcontact.load("models/gallery/block_in_corner.yaml").with_value("material.young_modulus", modulus)
     told = [note for note in check(problem).notes if note.startswith("Young's modulus is")]
