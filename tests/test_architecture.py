@@ -13,8 +13,8 @@ PACKAGE = TESTS.parent / "bemcontact"
 Rule = Callable[[str, ast.Module], Iterator[str]]
 
 FOUNDATION = (
-    "cached", "frozen", "errors", "checks", "arrays", "threads", "compilation", "serialization", "options", "version",
-    "files", "views",
+    "cached", "frozen", "errors", "checks", "arrays", "interrupts", "threads", "compilation", "serialization",
+    "options", "version", "files", "views",
 )  # fmt: skip
 
 ROOMS = {
@@ -23,6 +23,7 @@ ROOMS = {
     "errors": ("frozen",),
     "checks": ("errors",),
     "arrays": ("errors", "checks"),
+    "interrupts": (),
     "threads": (),
     "compilation": (),
     "serialization": ("errors", "checks"),

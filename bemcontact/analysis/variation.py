@@ -6,7 +6,7 @@ from bemcontact.bem.condense import Condensation
 from bemcontact.bem.condense import condense as condense_body
 from bemcontact.bem.discretization import body_of
 from bemcontact.contact.condensed_contact import CondensedContact
-from bemcontact.errors import KeyPath, ProblemError
+from bemcontact.errors import KeyPath, OptionError, ProblemError
 from bemcontact.problems.key_path import parsed_path
 from bemcontact.problems.problem import Problem
 
@@ -53,6 +53,11 @@ class Variation:
 
 
 def case_of(problem: Problem, key: str) -> str | None:
-    """The load case whose factor a key path means, as `load_cases.wind` does; None for other paths."""
+    """The load case whose factor a key path means, as `load_cases.wind` does; None for other paths.
+
+    `OptionError` for the name of a load case alone.
+    """
     room, *rest = parsed_path(key)
+    if not rest and room in problem.load_cases and room not in Problem.model_fields:
+        raise OptionError(f"'{room}' is a load case; vary its factor by load_cases.{room}")
     return str(rest[0]) if room == "load_cases" and len(rest) == 1 and rest[0] in problem.load_cases else None

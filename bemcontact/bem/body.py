@@ -250,7 +250,14 @@ class Body:
             for part in parts
             for doubt in self.problem.units.doubts(part.material.young_modulus, part.material.poisson_ratio)
         )
-        return (*_left_out(self.problem), *_mixed_states(parts), *self._wedges(), *at_zero, *stated)
+        return (
+            *_left_out(self.problem),
+            *_mixed_states(parts),
+            *self._wedges(),
+            *at_zero,
+            *self.problem.units.misspelled(),
+            *stated,
+        )
 
     def _wedges(self) -> Iterator[str]:
         """Note contact points that conditions hold nearly along the rigid normal, and that slide into a wedge.

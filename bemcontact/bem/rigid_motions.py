@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike
 
 from bemcontact.arrays import Array, BoolArray, row_norms, short_svd, successive
 from bemcontact.bem.boundary_values import BoundaryValues
-from bemcontact.bem.contact_points import ContactPoints
 from bemcontact.bem.mesh import Mesh
 from bemcontact.bem.unit_pressures import UnitPressures
 from bemcontact.frozen import frozen
@@ -58,10 +57,6 @@ class RigidMotions:
         displacement[..., 1, :] = b + c * x[..., :1]
         return displacement
 
-    def along_normals(self, points: ContactPoints) -> Array:
-        """R (n, k): the motions of contact points along the rigid normals."""
-        return np.einsum("nx,nxk->nk", points.normals, self.displacement(points.mesh.nodes[points.node]))
-
     def gap_changes(self, pressures: UnitPressures, mesh: Mesh, points: int) -> Array:
         """R (n, k): the changes of all gaps by the motions of a body with this mesh."""
         return self.unit_changes(pressures, mesh, points) @ self.coefficients.T
@@ -77,10 +72,6 @@ class RigidMotions:
         else:
             np.add.at(changes, at, moved)
         return changes
-
-    def work(self, points: Array, forces: Array) -> Array:
-        """Work (k,) of forces (..., 2) at points (..., 2) in each motion."""
-        return np.tensordot(forces, self.displacement(points), axes=forces.ndim)
 
     def work_of(self, force: Array, moment: float, about: ArrayLike = (0.0, 0.0)) -> Array:
         """Work (k,) of a force (2,) and a moment about a point (2,), the origin if none is given, in each motion."""

@@ -10,11 +10,8 @@ from the data of the program, and so are violations of the constraints as the us
 They alone decide whether it is an answer. Where no attempt has one, a proof that there is none is looked for.
 """
 
-import signal
-import threading
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -27,6 +24,7 @@ from bemcontact.errors import ProblemError, SolverError
 from bemcontact.formulations.conic_scaling import Scaling, equilibrated, moved, size_of, symmetric, unscaled_end
 from bemcontact.formulations.linear_rays import infeasible_ray, unbounded_ray
 from bemcontact.formulations.presolve import FixedVariables
+from bemcontact.interrupts import interrupts
 
 ASKED, RAY = 1e-11, 1e-13
 """Tolerances that are asked of Clarabel, for a point and for a ray."""
@@ -340,23 +338,6 @@ def _solve_rest(data: dict[str, Any], chosen: Mapping[str, Any], max_iterations:
     if rows and np.isfinite(solution.obj_val):
         rows[-1] = solution.obj_val, solution.r_prim  # Clarabel may have withdrawn its last step
     return solution, _finite(np.array(rows).reshape(-1, 2))
-
-
-@contextmanager
-def interrupts() -> Iterator[list[int]]:
-    """Collect interrupts (Ctrl-C) in a list, and handle one at the end: what Clarabel calls cannot raise them."""
-    came: list[int] = []
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
-        yield came
-        return
-    signal.signal(signal.SIGINT, lambda number, _: came.append(number))
-    try:
-        yield came
-    finally:
-        signal.signal(signal.SIGINT, before)
-    if came:
-        before(came[0], None)
 
 
 def _finite(progress: Array) -> Array:

@@ -5,6 +5,7 @@ from math import isclose
 from typing import ClassVar
 
 from bemcontact.problems.validation import Label, SpecModel
+from bemcontact.problems.wording import near_by
 
 METERS = {
     "m": 1.0, "dm": 1e-1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "km": 1e3,
@@ -14,10 +15,13 @@ METERS = {
 NEWTONS = {
     "N": 1.0, "kN": 1e3, "MN": 1e6, "GN": 1e9, "mN": 1e-3, "uN": 1e-6, "µN": 1e-6, "μN": 1e-6, "nN": 1e-9, "daN": 10.0,
     "kgf": 9.80665, "kp": 9.80665, "lbf": 4.4482216152605, "lb": 4.4482216152605, "kip": 4448.2216152605,
+    "klbf": 4448.2216152605,
 }  # fmt: skip
 """Label of a unit of force -> the unit in newtons."""
 NAMED = {1.0: "Pa", 1e3: "kPa", 1e6: "MPa", 1e9: "GPa"}
 """Unit of stress in pascals -> its name."""
+ALIKE = 0.75
+"""Similarity from which a label is taken for a misspelled one: labels are free, and short ones are alike."""
 STIFFEST, DIAMOND = 2e12, 1.2e12
 """Young's modulus [Pa] above which there is no solid, and that of diamond, which is the largest of a bulk solid."""
 SOFTEST = 1e3
@@ -69,6 +73,17 @@ class Units(SpecModel):
         """The unit of stress in pascals; None if a label is not one of ``METERS`` and ``NEWTONS``."""
         length, force = METERS.get(self.length.strip()), NEWTONS.get(self.force.strip())
         return None if length is None or force is None else force / length**2
+
+    def misspelled(self) -> Iterator[str]:
+        """Note a label that is nearly that of a known unit; nothing is said of other labels."""
+        for key, label, known in (("length", self.length.strip(), METERS), ("force", self.force.strip(), NEWTONS)):
+            near = None if label in known else near_by(label, known, ALIKE)
+            if near is not None:
+                meant = " or ".join(f"'{unit}'" for unit in known if unit.lower() == near.lower())
+                yield (
+                    f"units.{key}: '{label}' is not a known unit; did you mean {meant}? "
+                    "Only in known units is Young's modulus checked"
+                )
 
     def doubts(self, young_modulus: float, poisson_ratio: float) -> Iterator[str]:
         """Note a Young's modulus that no solid has, or the number of a metal in other units.

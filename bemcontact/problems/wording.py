@@ -21,12 +21,12 @@ _PLAIN_NUMBER = re.compile(r"\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)
 _NUMBER_AND_UNIT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)? *[^\W\d_][^ ]*")
 
 
-def near_by(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that is closest to a misspelled one, or None."""
+def near_by(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
+    """Return the known word that is closest to a misspelled one; None if none is as similar as `cutoff`, up to 1."""
     lower = {candidate.lower(): candidate for candidate in known}
     if len(lower) > MANY_WORDS or len(word) > LONGEST_NAME:
         return None
-    matches = get_close_matches(word.lower(), lower, n=1)
+    matches = get_close_matches(word.lower(), lower, n=1, cutoff=cutoff)
     return lower[matches[0]] if matches else None
 
 

@@ -150,7 +150,7 @@ def accuracy_rows(accuracy: JsonObject, units: Units) -> Iterator[dict[str, str]
         size = lengths.get((bar["zone"], bar["interval"]), 0.0) if of_end else abs(bar["value"] or 0.0)
         interval = f" {bar['interval'] + 1}" if bar["interval"] is not None and _several(bars, bar) else ""
         over = error is not None and asked and bar["promised"] and error > asked
-        share = "not known" if error is None else f"{100 * error / (asked or 1.0):.2g} %"
+        share = "not known" if error is None else f"{float(f'{100 * error / (asked or 1.0):.2g}'):g} %"
         yield {
             "quantity": sentence_case(QUANTITIES[bar["quantity"]]) + interval,
             "zone": bar["zone"] or bar["mover"] or NOTHING,

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+import numpy as np
 from rich.console import Group, RenderableType
 from rich.text import Text
 
@@ -12,7 +13,8 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.parametric.parameter_path import ParameterPath, PathState
 from bemcontact.report.bars import error_percent, with_bar
 from bemcontact.report.contact_words import units_of
-from bemcontact.report.formatting import number, plural, sentence_case, vector
+from bemcontact.report.facts import UNRESOLVED
+from bemcontact.report.formatting import NEGLIGIBLE, number, plural, sentence_case, vector
 from bemcontact.report.tables import add, list_of_facts, table_of
 from bemcontact.report.text import add_verdict
 from bemcontact.report.verdicts import Verdict, mesh_verdict, quality_of_misfit
@@ -44,7 +46,7 @@ def breakpoint_words(path: ParameterPath, state: PathState) -> BreakpointWords:
         leave=_named(contact, state.left),
         touching=f"{len(state.touching)}",
         peak="infinite" if state.peak is None else with_bar(state.peak, state.peak_bar) + unknown,
-        place="" if state.at is None else _place(contact, state.at),
+        place="" if state.at is None else _place(contact, state.at, _shortest(contact, state.touching)),
     )
 
 
@@ -55,10 +57,16 @@ def _named(contact: CondensedContact, points: tuple[int, ...]) -> str:
     return ", ".join(f"{i} at {_place(contact, i)}" for i in points)
 
 
-def _place(contact: CondensedContact, i: int) -> str:
-    """The place of a point."""
+def _place(contact: CondensedContact, i: int, length: float = 0.0) -> str:
+    """The place of a point; what is small beside the length of a contact is zero."""
     x, y = contact.points[i].tolist()
-    return vector((x, y), "", scale=float(abs(contact.points).max()))
+    return vector((x, y), "", scale=max(float(abs(contact.points).max()), UNRESOLVED * length / NEGLIGIBLE))
+
+
+def _shortest(contact: CondensedContact, touching: tuple[int, ...]) -> float:
+    """The shortest contact of a zone that touches at these points [L]."""
+    lengths = np.bincount(contact.zone[[*touching]], weights=contact.weights[[*touching]])
+    return float(lengths[lengths > 0].min())
 
 
 def path_verdicts(path: ParameterPath) -> Iterator[Verdict]:

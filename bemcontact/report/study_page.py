@@ -8,11 +8,11 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from bemcontact.analysis.result import BEYOND
 from bemcontact.errors import escaped_lines
 from bemcontact.problems.units import Units
 from bemcontact.report.bars import NOTHING, error_percent, with_error
 from bemcontact.report.formatting import number, plural, seconds_in_words, sentence_case, with_unit
+from bemcontact.report.notes_of_members import stated_once
 from bemcontact.report.page import picture, template
 from bemcontact.report.tables import add, list_of_facts, table_of
 from bemcontact.report.text import add_verdict
@@ -72,10 +72,10 @@ def _mesh_verdict(rows: list[MemberRow], each: str) -> Verdict:
 
 def _left_out(study: StudyTable) -> str:
     """Of how many members error bars do not include something, and the first note on it; empty if there are none."""
-    beyond = [row for row in study.rows if row.holds is not False and BEYOND in row.message]
+    beyond = [row for row in study.rows if row.holds is not False and row.notes]
     if not beyond:
         return ""
-    first = replace(beyond[0], message=f"{beyond[0].message.partition(BEYOND)[0]}{BEYOND} this")
+    first = replace(beyond[0], message=beyond[0].notes[0])
     return f"Error bars of {len(beyond)} {plural('member', len(beyond))} leave something out. {_sentence(first)}"
 
 
@@ -121,6 +121,7 @@ def reading_in_words(reading: Reading) -> str:
 def render(study: StudyTable, pictures: Mapping[str, bytes], spec: str | None) -> str:
     """Write the page of a study as HTML that needs no other file; `pictures` are SVG files by their captions."""
     verdicts = study_verdicts(study)
+    texts, notes = stated_once([[*map(sentence_case, study.texts(row))] for row in study.rows[:MOST_ROWS]])
     return template("study.html").render(
         study=study,
         version=study.record().version,
@@ -134,7 +135,8 @@ def render(study: StudyTable, pictures: Mapping[str, bytes], spec: str | None) -
         left_out=_left_out(study),
         ranges=[(name, *_range_of(study, name)) for name in study.columns],
         columns=[(name, unit_of_output(name, study.units)) for name in study.columns],
-        rows=[*_cells(study, MOST_ROWS)],
+        rows=[*zip(_cells(study, MOST_ROWS), texts, strict=True)],
+        notes=notes,
         most=MOST_ROWS,
         pictures=[
             picture(svg, caption, f"{caption}, with error bars; members that do not hold are marked")
@@ -169,7 +171,6 @@ def _cells(study: StudyTable, most: int) -> Iterator[dict[str, Any]]:
             "outputs": [
                 UNKNOWN if study.unknown(row, name) else reading_in_words(row.reading(name)) for name in study.columns
             ],
-            "message": sentence_case(study.message(row)),
         }
 
 

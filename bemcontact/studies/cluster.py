@@ -57,12 +57,18 @@ def rows_by_dask(plan: StudyPlan, tasks: Iterable[Task], client: Any, say: Calla
             own[future.key] = task
             finished.add(future)
 
-    hand_on()
-    while (future := _next(finished, client, say)) is not None:
-        task = own.pop(future.key)
-        yield from _rows(plan, task, future)
-        future.release()
+    try:
         hand_on()
+        while (future := _next(finished, client, say)) is not None:
+            if future.status == "lost":  # a worker that has ended had the result: others compute it again
+                finished.add(future)
+                continue
+            task = own.pop(future.key)
+            yield from _rows(plan, task, future)
+            future.release()
+            hand_on()
+    except (distributed.CancelledError, OSError):
+        raise BemContactError("the connection to the Dask scheduler is lost; what was done is kept") from None
 
 
 def _next(finished: Any, client: Any, say: Callable[[str], object]) -> Any:
@@ -89,15 +95,15 @@ def _rows(plan: StudyPlan, task: Task, future: Any) -> Rows:
     """Rows of a task that has ended; that of which several workers have ended is tried no more."""
     import distributed
 
-    if future.status in ("cancelled", "lost"):
-        raise BemContactError("the connection to the Dask scheduler is lost; what was done is kept")
-    error = future.exception() if future.status != "finished" else None
-    if error is None:
-        yield from future.result()
-        return
-    if not isinstance(error, distributed.KilledWorker):
-        raise BemContactError(f"the cluster could not solve the study: {escaped(repr(error))}")
-    yield from (failed_row(number, plan.values(number), ENDED) for number in task.wanted)
+    try:
+        rows = future.result()
+    except distributed.KilledWorker:
+        rows = [failed_row(number, plan.values(number), ENDED) for number in task.wanted]
+    except Exception as error:
+        if future.status != "error" and isinstance(error, distributed.CancelledError | OSError):
+            raise  # this was the connection, and no task
+        raise BemContactError(f"the cluster could not solve the study: {escaped(repr(error))}") from error
+    yield from rows
 
 
 def _client(scheduler: str) -> Any:

@@ -40,11 +40,13 @@ class MemberRow(Leaf):
     mesh_error: float | None
     """Largest error bar, relative; null if it is not known."""
     message: str
-    """Why the member does not hold, or has no peak, and what its error bars do not include, in sentences."""
+    """Why the member does not hold, or has no peak, in sentences."""
     outputs: dict[str, Reading]
     """Outputs by name; none if the member failed."""
     stress: str = ""
     """Where stress is infinite; empty if it is finite, or if the largest stresses were not asked for."""
+    notes: tuple[str, ...] = ()
+    """What error bars of the member do not include, each in a sentence."""
 
     @property
     def holds(self) -> bool | None:
@@ -75,8 +77,9 @@ def row_of(number: int, values: Mapping[str, Any], result: Result, *, stresses: 
         certified=result.certified,
         met=accuracy.met,
         mesh_error=float(accuracy.worst) if known else None,
-        message=in_one_message(_message(status, result), _without_peak(result), _beyond_bars(result)),
+        message=in_one_message(_message(status, result), _without_peak(result)),
         stress=_infinite_stress(result) if stresses else "",
+        notes=tuple(note for note in result.notes if BEYOND in note) if result.certified else (),
         outputs=readings(result, stresses=stresses),
     )
 
@@ -119,11 +122,6 @@ def _infinite_stress(result: Result) -> str:
     return "stress is infinite at corners or edges, von_mises is the largest maximum away from them" if infinite else ""
 
 
-def _beyond_bars(result: Result) -> str:
-    """Notes on errors that no error bar includes; those of a result that is not certified do not matter."""
-    return "; ".join(note for note in result.notes if BEYOND in note) if result.certified else ""
-
-
 def failed_row(number: int, values: Mapping[str, Any], message: str) -> MemberRow:
     """The row of a member that has no result."""
     return MemberRow(
@@ -143,5 +141,5 @@ def row_from(record: Mapping[str, Any], number: int, values: Mapping[str, Any]) 
     """Read a row back from its JSON, as the member of a number with these values."""
     outputs = {name: Reading(**item) for name, item in record["outputs"].items()}
     kept = {key: record[key] for key in ("equations", "certified", "met", "mesh_error", "message")}
-    kept["stress"] = record.get("stress", "")
+    kept |= {"stress": record.get("stress", ""), "notes": tuple(record.get("notes", ()))}
     return MemberRow(number=number, values=dict(values), status=MemberStatus(record["status"]), outputs=outputs, **kept)

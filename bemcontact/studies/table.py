@@ -103,11 +103,11 @@ class StudyTable(Recorded, Tabular):
         present = dict.fromkeys(name for row in self.rows for name in row.outputs)
         return columns_of(self.outputs, [*present])
 
-    def message(self, row: MemberRow) -> str:
+    def texts(self, row: MemberRow) -> list[str]:
         """What is to be known of a member and the outputs in the table, in sentences; of others nothing is said."""
         unknown = [name for name in self.columns if self.unknown(row, name)]
         words = f"{' and '.join(unknown)} {'is' if len(unknown) == 1 else 'are'} not known" if unknown else ""
-        return in_one_message(row.message, row.stress if "von_mises" in self.outputs else "", words)
+        return [*filter(None, (row.message, *row.notes, row.stress if "von_mises" in self.outputs else "", words))]
 
     @staticmethod
     def unknown(row: MemberRow, column: str) -> bool:
@@ -136,7 +136,7 @@ class StudyTable(Recorded, Tabular):
             readings = [row.reading(name) for row in self.rows]
             columns[name] = [item.value for item in readings]
             columns[f"{name}_error"] = [item.error for item in readings]
-        columns["message"] = [*map(self.message, self.rows)]
+        columns["message"] = [in_one_message(*self.texts(row)) for row in self.rows]
         return columns
 
     def to_csv(self) -> str:

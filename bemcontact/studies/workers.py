@@ -15,6 +15,7 @@ from contextvars import ContextVar
 from multiprocessing.connection import Connection
 
 from bemcontact.errors import BemContactError, ProblemError
+from bemcontact.interrupts import interrupts
 from bemcontact.studies.plan import StudyPlan
 from bemcontact.studies.rows import MemberRow, failed_row
 from bemcontact.studies.work import Task, one_thread, rows_of_task, take_one_thread
@@ -78,7 +79,7 @@ class Processes(AbstractContextManager["Processes"]):
 
     def get_ready(self) -> None:
         """Start the processes, which read their modules if need be; otherwise each starts with its first task."""
-        with suppress(BrokenProcessPool), warnings.catch_warnings():  # the first task will find out
+        with interrupts(), suppress(BrokenProcessPool), warnings.catch_warnings():  # the first task will find out
             warnings.filterwarnings("ignore", ".* is multi-threaded", DeprecationWarning)  # BLAS knows how to fork
             for _ in range(self.count):
                 self._first.append(self.pool.submit(os.getpid))

@@ -45,6 +45,43 @@ def test_units_of_stress_agree_with_each_other():
         assert Units(length=length, force=force).pascals == pytest.approx(pascals, rel=1e-6)
 
 
+@pytest.mark.parametrize("label", [
+    *((key, word) for key, known in (("length", METERS), ("force", NEWTONS)) for word in known),
+    ("length", ""), ("force", ""), ("length", "furlong"), ("length", "cubit"), ("length", "yd"), ("length", "mi"),
+    ("length", "pm"), ("force", "dyn"), ("force", "pdl"), ("force", "tf"), ("force", "cN"), ("length", "any"),
+])  # fmt: skip
+def test_other_labels_are_free(label: tuple[str, str]):
+    """Known units, and those that exist and are not known, however short, are not taken for misspelled ones."""
+    assert [*Units.model_validate(dict([label])).misspelled()] == []
+
+
+@pytest.mark.parametrize(
+    ("key", "label", "meant"),
+    [
+        ("length", "inchs", "'inch'"),
+        ("length", "inches", "'inch'"),
+        ("length", "MM", "'mm'"),
+        ("length", "Cm", "'cm'"),
+        ("force", "KN", "'kN'"),
+        ("force", "lbs", "'lb'"),
+        ("force", "kips", "'kip'"),
+        ("force", "kg", "'kgf'"),
+        ("force", "mn", "'MN' or 'mN'"),  # either in small letters
+    ],
+)
+def test_a_misspelled_label_is_noted_with_the_known_one(key: str, label: str, meant: str):
+    (note,) = Units(**{key: label}).misspelled()
+    assert note.startswith(f"units.{key}: '{label}' is not a known unit; did you mean {meant}?")
+
+
+def test_check_solve_and_json_note_a_misspelled_label():
+    problem = bemcontact.load("models/gallery/block_in_corner.yaml").with_value("units.length", "inchs")
+    (note,) = problem.units.misspelled()
+    result = bemcontact.solve(problem, accuracy=0.05)
+    for notes in (check(problem).notes, result.notes, result.to_dict()["notes"]):
+        assert [*notes].count(note) == 1
+
+
 @pytest.mark.parametrize(
     ("modulus", "found"), [(206e9, "2.06e+17 Pa (2.06e+11 MPa), stiffer than diamond"), (210e3, None)]
 )

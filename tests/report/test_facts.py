@@ -87,7 +87,7 @@ def test_rows_have_units_and_errors_of_ends_relative_to_their_interval():
         "183.3 ± 0.4 kN/cm²", "405.0 ± 0.5 kN/cm", "1.00 ± 0.02 cm", "5.00 ± 0.08 cm", "4.0 ± 0.1 cm",
         "9.68 ± 0.18 kN/cm²·cm^0.5", "1.0500 ± 0.0032 cm",
     ]  # fmt: skip
-    assert [row["share"] for row in rows] == ["20 %", "10 %", "50 %", "2e+02 %", "–", "–", "30 %"]
+    assert [row["share"] for row in rows] == ["20 %", "10 %", "50 %", "200 %", "–", "–", "30 %"]
     assert [row["color"] for row in rows] == ["", "", "", "bad", "", "", ""]
 
 

@@ -17,6 +17,8 @@ from bemcontact.report.formatting import number, vector
 from bemcontact.report.path_page import render
 from bemcontact.report.path_text import breakpoint_words
 
+GALLERY = Path(__file__).parents[2] / "models" / "gallery"
+
 
 @pytest.fixture(scope="module")
 def link() -> ParameterPath:
@@ -90,3 +92,16 @@ def test_an_infinite_peak_is_stated():
     page = render(path, {}, None, None)
     assert {row[1] for row in rows_of(page)} == {"infinite"}
     assert "Peak pressureinfinite in foot" in read(page).text
+
+
+def test_the_place_of_a_peak_is_zero_where_it_is_small_beside_the_contact():
+    """Beside the lowest point of a roller of radius R the place is x²/2R high; a point that enters is in full."""
+    path = bemcontact.follow(
+        bemcontact.load(GALLERY / "hertz_small.yaml"), "conditions.top.pressure", 100, accuracy=0.1
+    )
+    x, y = path.contact.points[1].tolist()
+    last = path.breakpoints[-1]
+    length = path.contact.weights[[*last.touching]].sum()
+    assert 0 < y < 1e-3 * length < x
+    words = breakpoint_words(path, replace(last, at=1, entered=(1,)))
+    assert (words.place, words.enter) == (vector((x, 0.0)), f"1 at {vector((x, y))}")

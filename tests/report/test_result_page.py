@@ -214,6 +214,18 @@ def test_numbers_that_are_not_to_be_relied_on_come_after_the_verdict():
         assert min(places, key=lambda words: places[words]) == first
 
 
+def test_shares_larger_than_the_accuracy_asked_are_marked():
+    """Of an answer that is accurate enough none is; asked for half of the error that is known, the largest ones are."""
+    result = rolled()
+    assert 'data-label="Share of the accuracy asked"><span class="badge bad">' not in render(result, {}, None)
+    asked = result.accuracy.worst / 2
+    unmet = replace(result, accuracy=replace(result.accuracy, asked=asked))
+    over = [bar for bar in unmet.accuracy.bars if bar.promised and bar.bar is not None and bar.bar > asked]
+    page = render(unmet, {}, None)
+    assert 0 < page.count('data-label="Share of the accuracy asked"><span class="badge bad">') == len(over)
+    assert '<span class="badge bad">200 %</span>' in page
+
+
 def test_a_caption_counts_the_load_cases_that_are_drawn(monkeypatch: pytest.MonkeyPatch):
     """Of many load cases only those with the largest forces have pictures, and the alternative names only these."""
     monkeypatch.setattr(load_cases, "MOST", 1)

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import bemcontact
-from bemcontact.errors import ProblemError
+from bemcontact.errors import BemContactError, ProblemError
 from bemcontact.studies import cluster
 from bemcontact.studies.cluster import connected, rows_by_dask
 from bemcontact.studies.plan import study_plan
@@ -70,6 +70,45 @@ def test_a_cluster_finds_the_same_rows_though_a_worker_is_killed(tmp_path: Path)
             if len(rows) == 3:
                 workers[0].send_signal(signal.SIGKILL)
     assert sorted(rows, key=lambda row: row.number) == expected
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+def test_results_that_are_lost_with_their_workers_are_computed_again(tmp_path: Path):
+    """All workers end when the last results are done and not yet read; then there is a new one."""
+    rows = list[MemberRow]()
+    with cluster_of(tmp_path) as (address, start), connected(address) as client:
+        workers = [start(name) for name in ("a", "b")]
+
+        def wait_for(status: str) -> None:
+            deadline = time.monotonic() + 60
+            while {future.status for future in client.futures.values()} != {status} and time.monotonic() < deadline:
+                time.sleep(0.01)
+            assert {future.status for future in client.futures.values()} == {status}
+
+        for row in rows_by_dask(PLAN, tasks_of(PLAN, [False] * len(PLAN)), client, ignored):
+            rows.append(row)
+            if len(rows) == 1:
+                wait_for("finished")
+                for worker in workers:
+                    worker.kill()
+                wait_for("lost")
+                start("c")
+    assert sorted(row.number for row in rows) == [*range(len(PLAN))]
+    assert {row.holds for row in rows} == {True}
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+def test_a_scheduler_that_ends_is_an_error_that_says_so(tmp_path: Path):
+    """What was done is kept by the journal; the client would say that a pool of connections is closed."""
+    with cluster_of(tmp_path) as (address, start), connected(address) as client:
+        start("a")
+        rows = rows_by_dask(PLAN, tasks_of(PLAN, [False] * len(PLAN)), client, ignored)
+        next(rows)
+        os.kill(client.run_on_scheduler(os.getpid), signal.SIGKILL)
+        with pytest.raises(BemContactError, match="connection to the Dask scheduler is lost"):
+            list(rows)
 
 
 @pytest.mark.slow

@@ -56,6 +56,10 @@ def test_load_cases_are_members_unless_they_are_chosen():
 
 def test_the_factor_of_a_load_case_can_be_varied():
     name = next(iter(WEDGE.load_cases))
+    with pytest.raises(ProblemError, match=rf"'{name}' is a load case; vary its factor by load_cases\.{name}"):
+        study_plan(WEDGE, {name: [0.5, 2.0]})
+    with pytest.raises(ProblemError, match="vary its factor by"):
+        bemcontact.follow(WEDGE, name, 2.0)
     plan = study_plan(WEDGE, {f"load_cases.{name}": [0.5, 2.0]})
     assert [plan.member(number).factors()[name] for number in range(2)] == [0.5, 2.0]
 

@@ -55,9 +55,10 @@ def test_a_row_has_the_notes_on_what_its_error_bars_do_not_include():
     notes = [note for note in result.notes if BEYOND in note]
     assert row.holds
     assert notes
-    assert row.message == "; ".join(notes)
+    assert (row.message, row.notes) == ("", tuple(notes))
+    assert row_from(json.loads(row.to_json()), 0, {}) == row
     roller = bemcontact.load(MODELS / "gallery" / "hertz_small.yaml")
-    assert row_of(0, {}, bemcontact.solve(roller)).message == ""
+    assert row_of(0, {}, bemcontact.solve(roller)).notes == ()
 
 
 def test_a_mesh_that_is_not_assessed_neither_holds_nor_fails():

@@ -77,6 +77,27 @@ for last in (4, 5):
 """
 
 
+INTERRUPTED = """
+import _thread, os, signal, sys
+from bemcontact.studies.workers import Processes
+signal.signal(signal.SIGINT, signal.default_int_handler)
+os.register_at_fork(before=_thread.interrupt_main)  # as one that comes between two lines of Python
+with Processes(2, None, forked=True) as processes:
+    try:
+        processes.get_ready()
+    except KeyboardInterrupt:
+        print("interrupted")
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere processes are not forked")
+def test_an_interrupt_is_not_lost_while_processes_are_forked():
+    """Python drops what is raised in the hooks of a fork, such as those of `logging`, and prints it."""
+    done = subprocess.run([sys.executable, "-c", INTERRUPTED], capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("interrupted\n", "")
+
+
 @pytest.mark.slow
 def test_processes_end_when_nobody_wants_more_rows():
     before = set(threading.enumerate())
