@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.adaptivity.fields import CaseAnswer, Solved, solved_state
-from bemcontact.arrays import Array
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.body import Body
 from bemcontact.bem.condense import Condenser
 from bemcontact.bem.contact_points import ALIKE
@@ -69,7 +69,26 @@ def with_resting_contacts(answer: Solved, condenser: Condenser) -> Solved:
             found = solved_state(condenser(problem))
         except (ProblemError, SingularSystemError, SolverError):
             break
+        if _lets_go(answer, found):
+            break
     return answer
+
+
+def _lets_go(before: Solved, after: Solved) -> bool:
+    """Whether a free body or tool that is pressed before contact follows it is not pressed afterwards, in any case.
+
+    A plate that turns by a given angle squeezes a roller out: with normals after the turn there is no pressure until
+    the roller has moved by its own size. That is no state near the one as drawn.
+    """
+    return any((_pressed(one) & ~_pressed(two)).any() for one, two in zip(before.answers, after.answers, strict=True))
+
+
+def _pressed(case: CaseAnswer) -> BoolArray:
+    """Which bodies and tools are free to move, and are pressed."""
+    body, contact, solution = case.condensation.body, case.condensation.contact, case.solution
+    at = contact.pressed(solution.pressure, solution.displacement)
+    moved = body.seen.unit_changes[at].any(axis=0) & body.free.coefficients.any(axis=0)
+    return np.any(moved.reshape(-1, 3), axis=1)
 
 
 def may_move(problem: Problem) -> bool:

@@ -8,6 +8,7 @@ from bemcontact.arrays import Array, BoolArray, nonnegative_residual, norm
 from bemcontact.bem.body import Body
 from bemcontact.bem.free_motions import BODY, UNSEEN, FreeMotions
 from bemcontact.bem.rigid_motions import toward
+from bemcontact.contact.free_motions import unseen_ways
 from bemcontact.contact.load_cases import BALANCED
 from bemcontact.errors import Issue, ProblemError
 from bemcontact.problems.curves import CircularArc
@@ -17,7 +18,7 @@ HELD_INSIDE = 1e-6
 """Depth over the size of a body up to which it is drawn as held in a surface: that of coordinates with six digits."""
 IDLE = 1e-3
 """Least normal displacement, over that of the motion, of a motion that opens gaps. As a roller turns about nearly its
-middle, gaps on a coarse mesh seem to open, by less."""
+middle, gaps on a coarse mesh seem to open, by less. A motion without any turn has no such error."""
 
 
 def each_case(body: Body) -> Iterator[Body]:
@@ -92,7 +93,9 @@ def _check_support(body: Body) -> None:
     if norm(pull) > BALANCED:
         raise ProblemError(_pull(body, body.seen.combined(pull[:, None])))
     unloaded = load.size and not load.any()
-    if unloaded and (_may_leave(R) or (idle_motion(body) is not None and not _may_be_squeezed(body))):
+    shifts = unseen_ways(body.seen.coefficients[:, 2::3].T, UNSEEN)
+    leaves = unloaded and (_may_leave(R) or _may_leave(R @ shifts, UNSEEN))
+    if leaves or (unloaded and idle_motion(body) is not None and not _may_be_squeezed(body)):
         raise ProblemError(
             f"contact holds {_against(body.seen)}, but no load presses it onto its support, so that its position "
             "is not determined; apply a load, or prescribe a displacement"
@@ -122,17 +125,17 @@ def _may_be_squeezed(body: Body) -> bool:
     return stated or bool(body.problem.tools) or bool(body.points.gap.min() < -UNSEEN * body.mesh.size)
 
 
-def _may_leave(rates: Array) -> bool:
-    """Whether motions with these changes (n, k) of gaps open all of them and close none."""
+def _may_leave(rates: Array, least: float = IDLE) -> bool:
+    """Whether motions with these changes (n, k) of gaps open all of them, by a `least` part, and close none."""
     while len(rates):
-        opened = _opening(rates)[1]
+        opened = _opening(rates, least)[1]
         if not opened.any():
             return False
         rates = rates[~opened]  # enough of this motion makes up for what others close of these
     return True
 
 
-def _opening(rates: Array) -> tuple[Array, BoolArray]:
+def _opening(rates: Array, least: float = IDLE) -> tuple[Array, BoolArray]:
     """The motion (k,) of those with rates (n, k) that closes no gap and is nearest to ratesᵀ1; which (n,) it opens.
 
     It is a residual of nonnegative least squares (Moreau).
@@ -140,7 +143,7 @@ def _opening(rates: Array) -> tuple[Array, BoolArray]:
     part = nonnegative_residual(rates.T, -rates.sum(axis=0))
     part /= max(np.linalg.norm(part), UNSEEN)
     size = abs(part).max(initial=0.0)
-    return part, (rates @ part > IDLE * size) & (size > UNSEEN)
+    return part, (rates @ part > least * size) & (size > UNSEEN)
 
 
 def _pull(body: Body, pull: FreeMotions) -> str:

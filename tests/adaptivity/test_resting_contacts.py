@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy
 from known_answers import pin_in_hole
-from several_bodies import HELD, block, circle, elastic, polygon, problem
+from several_bodies import HELD, block, circle, elastic, polygon, problem, rigid
 
 import bemcontact
 from bemcontact.adaptivity import resting_contacts
@@ -467,3 +468,97 @@ def test_load_cases_note_how_far_contact_is_from_where_it_would_be_alone():
     assert len(told) == 1
     assert off <= told[0] / 100 <= 3 * off
     assert not any("shorter" in note for note in result.notes)
+
+
+ROLLER, STEEL, DOWN = 10.0, 210e3, 0.01
+
+
+def under_a_plate(
+    rotation: float, *, axes: float = 0.0, unit: float = 1.0, swap: bool = False, post: bool = False
+) -> bemcontact.Result:
+    """A free roller on a rigid table, under a rigid plate that comes down by `DOWN` and turns about its middle.
+
+    All is turned by an angle [deg], and lengths are in a `unit`; the plate may press on a post that is held, too.
+    """
+    cosine, sine = np.cos(np.radians(axes)), np.sin(np.radians(axes))
+
+    def at(x: float, y: float) -> list[float]:
+        return [unit * (cosine * x - sine * y), unit * (sine * x + cosine * y)]
+
+    def box(left: float, right: float, low: float, high: float) -> dict[str, object]:
+        return polygon(bottom=at(left, low), right=at(right, low), top=at(right, high), left=at(left, high))
+
+    modulus, (x, y) = STEEL / unit**2, at(0, -DOWN)
+    bodies = {
+        "table": rigid(box(-40, 40, -30, -ROLLER)),
+        "roller": elastic({"outer": [circle("rim", unit * ROLLER)]}, modulus=modulus),
+        "plate": rigid(box(-40, 40, ROLLER, 30)),
+    }
+    contacts = {"low": ["roller/rim", "table/top"], "high": ["roller/rim", "plate/bottom"]}
+    if post:
+        bodies["post"] = elastic(box(-30, -20, -ROLLER, ROLLER), {"bottom": {"fixed": True}}, modulus)
+        contacts["post"] = ["post/top", "plate/bottom"]
+    return bemcontact.solve(
+        bemcontact.problem({
+            "name": "roller under a plate",
+            "bodies": bodies,
+            "contacts": {name: {"between": pair[::-1] if swap else pair} for name, pair in contacts.items()},
+            "tools": {"plate": {
+                "zones": [*contacts][1:], "point": at(0, ROLLER), "displacement": {"x": x, "y": y, "rotation": rotation}
+            }},
+        })
+    )  # fmt: skip
+
+
+def peak_of_squeezed_roller() -> float:
+    """Peak pressure on a roller between plates that approach by `DOWN` = 2 P (2 ln(4 R / a) - 1) / π E'.
+
+    The contacts are those of Hertz: a² = 4 P R / π E' and p0 = 2 P / π a (Johnson 1985, section 5.6).
+    """
+    modulus = STEEL / (1 - 0.3**2)
+
+    def half_width(force: float) -> float:
+        return float(np.sqrt(4 * force * ROLLER / np.pi / modulus))
+
+    def too_far(force: float) -> float:
+        return 2 * force / np.pi / modulus * (2 * np.log(4 * ROLLER / half_width(force)) - 1) - DOWN
+
+    force = scipy.optimize.brentq(too_far, 1.0, 1e4)
+    return 2 * force / np.pi / half_width(force)
+
+
+@pytest.mark.parametrize(
+    "view",
+    [{}, {"axes": 0.3}, {"axes": 2}, {"axes": 5, "swap": True}, {"axes": 27}, {"axes": 90}, {"unit": 1 / 25.4}],
+    ids=str,
+)
+@pytest.mark.parametrize("rotation", [0.0, 1e-4, -1e-3, 1e-3])
+def test_a_roller_under_a_plate_that_turns_is_squeezed_in_all_axes(rotation: float, view: dict[str, float]):
+    """A circle does not see a turn: the roller takes half of it, and both contacts are those of plates in parallel.
+
+    Contact does not follow the turn: there is no pressure between a table and a plate that is not parallel to it until
+    the roller has left the place between them. So the roller is held along the table, as a little friction does.
+    """
+    result = under_a_plate(rotation, **view)
+    assert result.holds
+    for zone in ("low", "high"):
+        bar = result.accuracy.bar_of("peak", zone)
+        assert bar.value is not None
+        assert bar.value * view.get("unit", 1.0) ** 2 == pytest.approx(peak_of_squeezed_roller(), rel=bar.bar)
+    assert any("moves no contact point and has no load: it is held at zero" in note for note in result.notes)
+    assert not any("no contact point carries pressure" in note for note in result.notes)
+
+
+@pytest.mark.parametrize("axes", [0, 27])
+def test_a_plate_that_pushes_a_roller_out_by_the_accuracy_asked_has_no_certified_answer(axes: float):
+    """At 0.01 it pushes along the table by one part in a hundred of its force, which is what was asked for."""
+    assert not under_a_plate(0.01, axes=axes).certified
+
+
+@pytest.mark.parametrize("axes", [0, 27])
+def test_a_roller_is_squeezed_beside_a_post_that_goes_on_to_press(axes: float):
+    """Contact that is followed would leave the pressure on the post, and none on the roller beside it."""
+    result = under_a_plate(1e-3, axes=axes, post=True)
+    assert np.hypot(*result.forces["post"]) > 0
+    bar = result.accuracy.bar_of("peak", "high")
+    assert bar.value == pytest.approx(peak_of_squeezed_roller(), rel=bar.bar)

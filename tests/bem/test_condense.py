@@ -113,6 +113,31 @@ def test_a_block_that_nothing_squeezes_or_loads_has_no_position():
     body_of(block({}, {"base": (["bottom"], PLANE), "wall": (["left"], WALL), "lid": (["top"], lid)}, loads=hot))
 
 
+@pytest.mark.parametrize("axes", [0.0, 0.005, 0.5, np.pi / 2])
+@pytest.mark.parametrize("slope", [0.0, 1e-8, -1e-6, 1e-4, 1e-3, 1e-2])
+def test_a_block_that_a_lid_squeezes_out_is_refused_at_any_slope(slope, axes):
+    """Along the base to the wider side it leaves all that it may touch, so that no pressure balances itself on it."""
+
+    def at(x, y):
+        return [np.cos(axes) * x - np.sin(axes) * y, np.sin(axes) * x + np.cos(axes) * y]
+
+    edges = [
+        {key: at(*value) if key in ("start", "end") else value for key, value in edge.items()}
+        for edge in rectangle(2.0, 1.0, 6, 4)
+    ]
+    zones = {
+        "base": (["bottom"], {"kind": "plane", "point": [0, 0], "normal": at(0, 1)}),
+        "lid": (["top"], {"kind": "plane", "point": at(1, 1), "normal": at(-slope, -1)}),
+    }
+    x, y = at(0.0, -0.01)
+    pressed = problem(edges, zones, tools={"lid": {"zones": "lid", "displacement": {"x": x, "y": y}}})
+    if not slope:
+        assert solve(pressed).peak.pressure == pytest.approx(1000 / (1 - 0.3**2) * 0.01)
+        return
+    with pytest.raises(ProblemError, match="no load presses it"):
+        body_of(pressed)
+
+
 def test_uniform_pressure_on_a_block_is_exact():
     """Constant stress: p = 10 at every point, also if only contact holds the body."""
     for conditions in ({"top": {"pressure": 10}}, {"top": {"pressure": 10}, "left": {"displacement": {"x": 0}}}):
