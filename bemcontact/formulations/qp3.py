@@ -5,6 +5,10 @@
 
 In equilibrium the objective is pᵀJδ, (19). M stays unsymmetric in the constraints; the objective sees its symmetric
 part only, which changes no value of it.
+
+The solver is given the forces f = J p of the contact points, J tributary. The multipliers of f >= 0 and δ >= 0 are then
+gaps and forces, so that primal and dual numbers have the same sizes. Over p, columns of short elements are as small as
+their weights, and the regularization of the solver hides them.
 """
 
 from dataclasses import replace
@@ -184,17 +188,17 @@ class _Optimum:
 
 
 def _minimized(scaled: ScaledContact, work: Objective, options: SolveOptions) -> _Optimum:
-    """State the quadratic program in cvxpy, and solve it."""
+    """State the quadratic program over forces in cvxpy, and solve it."""
     import cvxpy as cp
 
-    M, R, ell, load = scaled.compliance, scaled.rigid_motions, scaled.equilibrium, scaled.motion_load
+    w, R = scaled.weights, scaled.rigid_motions
     n, k = R.shape
-    p = cp.Variable(n, nonneg=True, name="pressure")
+    f = cp.Variable(n, nonneg=True, name="force")
     a = cp.Variable(k, name="rigid_amplitudes") if k else None
-    goal = 0.5 * cp.quad_form(p, cp.psd_wrap(work.hessian)) + work.pressure @ p
-    gap, balance = scaled.offset + M @ p, []
+    goal = 0.5 * cp.quad_form(f, cp.psd_wrap(work.hessian / np.outer(w, w))) + (work.pressure / w) @ f
+    gap, balance = scaled.offset + (scaled.compliance / w) @ f, []
     if a is not None:
-        goal, gap, balance = goal + work.amplitudes @ a, gap + R @ a, [ell.T @ p == -load]
+        goal, gap, balance = goal + work.amplitudes @ a, gap + R @ a, [R.T @ f == -scaled.motion_load]
     program = cp.Problem(cp.Minimize(goal), [gap >= 0, *balance])
     try:
         if options.solver is ConvexSolver.PIQP:
@@ -206,12 +210,12 @@ def _minimized(scaled: ScaledContact, work: Objective, options: SolveOptions) ->
             f"{NAMES[options.solver]} found no solution of QP3; check the mesh for very short elements, or solve the "
             "complementarity problem directly"
         ) from error
-    has_point, status = p.value is not None, STATUSES[str(program.status)]
+    has_point, status = f.value is not None, STATUSES[str(program.status)]
     if options.solver is ConvexSolver.PIQP and not has_point:
         status = Status.NO_SOLUTION_FOUND  # it proves nothing
     return _Optimum(
         status=Status.NUMERICAL_FAILURE if answer.failed else status,
-        pressure=np.asarray(p.value, float) if has_point else np.zeros(n),
+        pressure=np.asarray(f.value, float) / w if has_point else np.zeros(n),
         amplitudes=np.asarray(a.value, float) if has_point and a is not None else np.zeros(k),
         iterations=program.solver_stats.num_iters or 0,
         has_point=has_point,

@@ -1,6 +1,7 @@
 """QP3: its objective, its convexity, and its agreement with the direct solver."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,10 +12,11 @@ from bemcontact.contact.condensed_contact import CondensedContact
 from bemcontact.contact.solution import Status
 from bemcontact.errors import NotConvexError, OptionError, ProblemError, SolverError
 from bemcontact.formulations import clarabel, complementarity, piqp, qp3
-from bemcontact.formulations.scaling import scale
+from bemcontact.formulations.scaling import scale, scaled_point
 from bemcontact.options import SolveOptions, Weights
 
 UNPOLISHED = SolveOptions.of("qp3", polish=False)
+GALLERY = Path(__file__).parents[2] / "models" / "gallery"
 
 
 def balanced(problem, rng: np.random.Generator) -> np.ndarray:
@@ -195,6 +197,23 @@ def test_strips_with_small_eigenvalues(points, width, least):
     solution, direct = qp3.solve(problem), complementarity.solve(problem)
     assert solution.status is Status.SOLVED
     assert solution.pressure == pytest.approx(direct.pressure, abs=1e-9 * direct.pressure.max())
+
+
+@pytest.mark.parametrize("name", ["beam_on_two_supports", "hertz_small", "three_zones"])
+def test_the_first_attempt_answers_where_elements_are_graded(name: str):
+    """Weights of 1 : 1000 and more: over forces all columns are of one size. Clarabel needs one attempt, and no note.
+
+    At the contact state pᵀJδ is 0. The gap between primal and dual value, which an answer has, bounds it.
+    """
+    contact = bemcontact.condense(bemcontact.load(GALLERY / f"{name}.yaml"))
+    assert contact.weights.max() > 1e3 * contact.weights.min()
+    solution, scaled = qp3.solve(contact, UNPOLISHED), scale(contact)
+    assert solution.status is Status.SOLVED
+    assert solution.notes == ()
+    p, a = scaled_point(contact, solution.pressure, solution.rigid_amplitudes)
+    work = qp3.objective(scaled, np.diag(scaled.weights))
+    size = max(1.0, abs(work.value(p, a) - work.constant))
+    assert abs(p @ (scaled.weights * scaled.gap(p, a))) <= clarabel.GOOD * size
 
 
 @pytest.mark.parametrize("refine", [1, 5])
