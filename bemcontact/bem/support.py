@@ -92,10 +92,11 @@ def _check_support(body: Body) -> None:
     pull = nonnegative_residual(R.T, -load)
     if norm(pull) > BALANCED:
         raise ProblemError(_pull(body, body.seen.combined(pull[:, None])))
-    unloaded = load.size and not load.any()
+    if not load.size or load.any():
+        return
     shifts = unseen_ways(body.seen.coefficients[:, 2::3].T, UNSEEN)
-    leaves = unloaded and (_may_leave(R) or _may_leave(R @ shifts, UNSEEN))
-    if leaves or (unloaded and idle_motion(body) is not None and not _may_be_squeezed(body)):
+    leaves = _may_leave(R) or _may_leave(R @ shifts, UNSEEN)
+    if leaves or (idle_motion(body) is not None and not _may_be_squeezed(body)):
         raise ProblemError(
             f"contact holds {_against(body.seen)}, but no load presses it onto its support, so that its position "
             "is not determined; apply a load, or prescribe a displacement"
