@@ -103,9 +103,10 @@ def ensure_folder_place(path: Path) -> None:
         raise NotADirectoryError(f"{path}: {above} is a file, and can hold no folder; name another place")
     try:
         with _parents(target):
-            for probe in (_beside(target), *([_beside(target / "within")] if target.is_dir() else [])):
-                probe.mkdir()
-                probe.rmdir()
+            (probe := _beside(target)).mkdir()
+            probe.rmdir()
+            if target.is_dir() and not os.access(target, os.W_OK | os.X_OK):  # a probe could be left in it by a kill
+                raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     except OSError as error:
         raise OSError(f"{path} cannot be written: {error.strerror}") from error
 
