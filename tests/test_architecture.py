@@ -24,7 +24,7 @@ ROOMS = {
     "checks": ("errors",),
     "arrays": ("errors", "checks"),
     "threads": (),
-    "compilation": (),
+    "compilation": ("errors",),
     "serialization": ("errors", "checks"),
     "options": ("frozen", "errors", "checks"),
     "version": (),
