@@ -7,6 +7,8 @@ from contextvars import ContextVar
 from functools import lru_cache
 from typing import Any, TypeVar
 
+from bemcontact.errors import BemContactError, escaped
+
 Function = TypeVar("Function", bound=Callable[..., object])
 Watch = Callable[[], AbstractContextManager[object]]
 
@@ -53,6 +55,29 @@ def _listen() -> None:
     event.register("numba:compile", Compilations())
 
 
+def _miss_what_is_damaged(cache: Any) -> None:
+    """Let numba compile again where it cannot read machine code that is kept, as a file that was cut off.
+
+    `BemContactError` names the folder to delete if the file cannot be replaced.
+    """
+    load = cache.load_overload
+
+    def load_or_discard(signature: object, context: object) -> object:
+        try:
+            return load(signature, context)
+        except Exception:  # unpickling may raise any
+            try:
+                cache.flush()
+            except OSError as error:
+                raise BemContactError(
+                    f"{escaped(cache.cache_path)}: machine code that numba keeps here can be neither read nor replaced "
+                    f"({error.strerror}); delete this folder"
+                ) from error
+            return None
+
+    cache.load_overload = load_or_discard
+
+
 def compiled(*, inner: bool = False, reorder: bool = False) -> Callable[[Function], Function]:
     """Compile a function at its first call; machine code is kept for later processes if there is a directory for it.
 
@@ -72,8 +97,10 @@ def compiled(*, inner: bool = False, reorder: bool = False) -> Callable[[Functio
 
     def decorate(function: Function) -> Function:
         try:
-            return njit(function, cache=True, **options)
+            dispatcher = njit(function, cache=True, **options)
         except RuntimeError:  # there is no directory to keep the machine code in
             return njit(function, **options)
+        _miss_what_is_damaged(dispatcher._cache)
+        return dispatcher
 
     return decorate

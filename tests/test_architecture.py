@@ -25,7 +25,7 @@ ROOMS = {
     "arrays": ("errors", "checks"),
     "interrupts": (),
     "threads": (),
-    "compilation": (),
+    "compilation": ("errors",),
     "serialization": ("errors", "checks"),
     "options": ("frozen", "errors", "checks"),
     "version": (),

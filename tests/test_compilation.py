@@ -12,6 +12,7 @@ import pytest
 
 from bemcontact import compilation
 from bemcontact.analysis.solve import COMPILATION, Stopwatch
+from bemcontact.errors import BemContactError
 
 CYLINDER = Path(__file__).parents[1] / "models" / "cylinder_on_plane.yaml"
 SOURCE = """
@@ -66,6 +67,36 @@ def test_the_first_call_compiles_once_in_a_stage_of_its_own(four_times):
 def test_machine_code_that_is_kept_is_no_stage(four_times):
     in_a_stage(four_times())
     assert in_a_stage(four_times())[0] == [("work", "")]
+
+
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+@pytest.mark.parametrize("part", [0.0, 0.5, 0.95])
+def test_machine_code_that_was_cut_off_is_compiled_again(four_times, tmp_path, ending, part):
+    """Index and code, of the inner function too; afterwards what is kept is whole."""
+    in_a_stage(four_times())
+    files = list(tmp_path.rglob(f"*.{ending}"))
+    assert len(files) == 2
+    for file in files:
+        whole = file.read_bytes()
+        file.write_bytes(whole[: int(part * len(whole))])
+    assert COMPILATION in in_a_stage(four_times())[1]
+    assert in_a_stage(four_times())[0] == [("work", "")]
+
+
+def test_machine_code_that_can_be_neither_read_nor_replaced_is_an_error(four_times, tmp_path, monkeypatch):
+    """The error names the folder to delete."""
+    in_a_stage(four_times())
+    for file in tmp_path.rglob("*.nbc"):
+        file.write_bytes(b"")
+    function = four_times()
+
+    def refuse():
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(function._cache, "flush", refuse)
+    with pytest.raises(BemContactError, match=r"Permission denied\); delete this folder") as caught:
+        function(3)
+    assert str(caught.value).startswith(f"{function.stats.cache_path}: ")
 
 
 def test_compilation_where_nobody_watches(four_times):

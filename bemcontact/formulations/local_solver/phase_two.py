@@ -251,18 +251,21 @@ class Descent:
 
     def _next(self, multipliers: Array) -> tuple[bool, int | None]:
         """Whether to take a Newton step, and if not, the place of a constraint to drop, if there is one."""
-        # A quick test uses one tolerance for all components. If it finds nothing clear, the point is refined and each
-        # component has its own tolerance. After three full Newton steps the remaining reduced gradient is rounding.
+        # A quick test uses one tolerance for all components, the next the terms of each. If both find nothing clear,
+        # the point is refined, and each component has its own tolerance. After three full Newton steps the remaining
+        # reduced gradient is rounding.
         progress, working, hessian = self.progress, self.working, self.hessian
         n, least = working.free.size, progress.least_index
         loose = self.whole < 3 and working.number < n
+        reduced = multipliers[:n] * working.free
+        square = dot(reduced, reduced)
         if loose:
-            reduced = multipliers[:n] * working.free
-            square = dot(reduced, reduced)
             large = square > (0.1 * progress.zero) ** 2 and square > (10.0 * EPS * largest(multipliers[n:])) ** 2
             if large and not self._rests(hessian.newton(progress.gradient)):
                 return True, None
         place = self._clearly_wrong(self._allowed(multipliers))
+        if place is None:
+            place = self._wrong_by_own_terms(multipliers, sqrt(square))
         if place is not None:
             return False, place
         self._refine()
@@ -293,6 +296,24 @@ class Descent:
             return edge
         above = max(CLEAR, inverse.largest) * zero
         return wrong_sign(working, multipliers, above, least_index=False, curvatures=curvatures)
+
+    def _wrong_by_own_terms(self, multipliers: Array, reduced: float) -> int | None:
+        """As `_clearly_wrong`, with a zero for each multiplier: its terms may be far smaller than those of others.
+
+        `reduced` is the length of the reduced gradient. What N makes of the rounding of the gradient is sampled, its
+        own rounding is seen from a refinement.
+        """
+        progress, working = self.progress, self.working
+        n, least = working.free.size, progress.least_index
+        if wrong_sign(working, self._allowed(multipliers), reduced, least_index=False) is None:
+            return None
+        refined = working.refined(multipliers)
+        terms = progress.terms_so_far(np.abs(working.of_all(refined)[n:]))
+        zeros = 100.0 * EPS * np.maximum(*(np.abs(working.multipliers(terms * phase)) for phase in _phases(n).T))
+        zeros[:n] = np.maximum(zeros[:n], max(FINE * progress.tolerance, 100.0 * EPS) * terms)
+        zeros = np.maximum(CLEAR * np.maximum(zeros, np.abs(refined - multipliers)), reduced)
+        curvatures = self._curvatures() if self._by_edges and not working.temporary and not least else None
+        return wrong_sign(working, self._allowed(refined), zeros, least_index=least, curvatures=curvatures)
 
     def _curvatures(self) -> Array:
         """The curvatures of the edges of the working set (n + r,)."""

@@ -186,13 +186,22 @@ class SearchState:
         return np.maximum(np.concatenate([fine, fine.dot(N)]), 100.0 * np.concatenate([lost, of_rows]))
 
     def lost(self, terms: Array, reach: Array) -> Array:
-        """Rounding of each component of the gradient (n,) if the point has that of numbers of the size `reach` (n,).
+        """Rounding of each component of the gradient (n,) if the point has that of numbers of the size `reach` (n,)."""
+        return EPS * np.maximum(terms, self.statement.curved(np.maximum(self._rounded, reach)))
 
-        Faint components of the point have no digit.
-        """
+    @property
+    def _rounded(self) -> Array:
+        """Size of the numbers whose rounding each component has (n,): faint components have no digit."""
         size = self.traveled
-        size = np.where(size <= LOST * max(self.far, 1.0), size / EPS, size)
-        return EPS * np.maximum(terms, self.statement.curved(np.maximum(size, reach)))
+        return np.where(size <= LOST * max(self.far, 1.0), size / EPS, size)
+
+    def terms_so_far(self, of_rows: Array) -> Array:
+        """Largest sum of the terms of each component of the gradient (n,) so far, which bounds its rounding.
+
+        Terms of multipliers of rows, of the sizes `of_rows` (m,), are included.
+        """
+        _, linear, rows = self.statement.absolute
+        return self.statement.curved(self._rounded) + linear + of_rows.dot(rows)
 
     def level(self, direction: Array, zero: Array) -> float:
         """Size of a slope along a direction that counts as zero, from that of each component of the gradient (n,)."""

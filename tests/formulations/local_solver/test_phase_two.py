@@ -124,3 +124,19 @@ def test_a_basis_that_is_no_longer_conjugate_is_made_anew(seed, monkeypatch):
     assert result.status is QPStatus.LOCAL_MINIMIZER
     assert result.iterations <= 4  # two before, at most two after
     np.testing.assert_allclose(H @ result.x, -c, atol=1e-9 * abs(c).max())
+
+
+def test_multipliers_that_are_small_beside_other_terms_are_released_without_refinement(monkeypatch):
+    """Σ h_i (x_i - t_i)²/2 over x >= 0 has its minimum at t, whatever the sizes of h and t.
+
+    The first variable has the terms 1e6, the others 1e-7 to 1e-6. Beside rounding of the first their multipliers are
+    nothing, but each has terms of its own. So refinements are left to the ends of phase two, of which there are two at
+    most: from far away it runs again.
+    """
+    h, t = np.array([1.0, *[1e-9] * 20]), np.array([1e6, *np.linspace(1e2, 1e3, 20)])
+    refine, refinements = Descent._refine, []
+    monkeypatch.setattr(Descent, "_refine", lambda descent: (refinements.append(1), refine(descent)))
+    result = minimize_qp(np.diag(h), -h * t, bl=np.zeros(21), options=QPOptions(scale=False, by_numba=False))
+    assert result.status is QPStatus.LOCAL_MINIMIZER
+    assert result.x == pytest.approx(t, rel=1e-9)
+    assert len(refinements) <= 2
