@@ -100,7 +100,8 @@ def compiled(*, inner: bool = False, reorder: bool = False) -> Callable[[Functio
             dispatcher = njit(function, cache=True, **options)
         except RuntimeError:  # there is no directory to keep the machine code in
             return njit(function, **options)
-        _miss_what_is_damaged(dispatcher._cache)
+        if hasattr(dispatcher, "_cache"):  # not with NUMBA_DISABLE_JIT, where it is the function itself
+            _miss_what_is_damaged(dispatcher._cache)
         return dispatcher
 
     return decorate

@@ -566,7 +566,7 @@ def test_a_roller_is_squeezed_beside_a_post_that_goes_on_to_press(axes: float):
 
 @pytest.mark.parametrize("axes", [2.0, 27.0, 45.0])
 def test_a_pin_that_turns_in_its_hole_is_followed_alike_in_all_axes(axes: float):
-    """Axes change nothing but the mesh, by its bars; before, they chose along which of them contact was followed."""
+    """Axes change the mesh by less than its bars, and nothing else: contact is followed along its force and across."""
 
     def turned_pin(degrees: float) -> bemcontact.Result:
         cosine, sine = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
