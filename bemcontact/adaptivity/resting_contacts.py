@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bemcontact.adaptivity.fields import CaseAnswer, Solved, solved_state
-from bemcontact.arrays import Array, BoolArray, norm
+from bemcontact.arrays import Array, BoolArray
 from bemcontact.bem.body import Body
 from bemcontact.bem.condense import Condenser
 from bemcontact.bem.contact_points import ALIKE
@@ -195,9 +195,9 @@ def _ways_of_rigid(case: CaseAnswer) -> Iterator[tuple[str, Way, float]]:
         spin, steps = tool._replace(x=0.0, y=0.0), tool.step - displacement[at]
         motion = steps + spin.motion_of(places - steps)
         mean, step = (force @ item / force.sum() for item in (motion, steps))
-        moves = abs(motion).min(axis=0) > ROUND_OFF * abs(motion).max()  # not as at a line of symmetry
-        spread = np.einsum("k,ki,kj->ij", force, motion - mean, motion - mean) / force.sum()
-        x, y = (step - mean + _as_a_whole(mean, spread, force @ contact.normals[beside], moves)).tolist()
+        spread = np.sqrt(force @ (motion - mean) ** 2 / force.sum())
+        still = abs(motion).min(axis=0) <= ROUND_OFF * abs(motion).max()  # as at a line of symmetry
+        x, y = (step - np.where(still | (abs(mean) <= AS_A_WHOLE * spread), mean, 0.0)).tolist()
         way, part = spin._replace(x=x, y=y), 0.0
         for name, surface in surfaces.items():
             mine, found, moments = contact.zone[beside] == names.index(name), list[Faces](), list[float]()
@@ -246,23 +246,10 @@ def _going_on(body: Body, surfaces: Mapping[str, Curved]) -> Iterator[dict[str, 
 
 def motion_as_a_whole(body: Body, contact: str, motion: "PairMotion") -> Array:
     """Motion (2,) [L] of a contact of two elastic bodies beside the one that its pairs follow, without deformations."""
-    step, moves = motion.mean - _pairs(body.problem)[contact].approach.step, np.ones(2, bool)
-    moves[_axes_of_symmetry(body, contact)] = False
-    return _as_a_whole(step, motion.spread, motion.force, moves)
-
-
-def _as_a_whole(mean: Array, spread: Array, force: Array, moves: BoolArray) -> Array:
-    """The components (2,) [L] of a mean motion (2,) that are large beside their spread, along a contact and across it.
-
-    From the mean products (2, 2) of the differences, the force (2,) of the contact, and the axes (2,) along which
-    anything moves as a whole: where one is a line of symmetry, they are those of the components.
-    """
-    size, axes = norm(force), np.eye(2)
-    if moves.all() and size:
-        x, y = force / size
-        axes = np.array([[y, x], [-x, y]])
-    parts, squares = np.where(moves, mean, 0.0) @ axes, np.einsum("ik,ij,jk->k", axes, spread, axes)
-    return axes @ np.where(abs(parts) > AS_A_WHOLE * np.sqrt(np.maximum(squares, 0.0)), parts, 0.0)
+    step = motion.mean - _pairs(body.problem)[contact].approach.step
+    step[abs(step) <= AS_A_WHOLE * motion.spread] = 0.0
+    step[_axes_of_symmetry(body, contact)] = 0.0
+    return step
 
 
 def _axes_of_symmetry(body: Body, contact: str) -> list[int]:
@@ -283,8 +270,7 @@ class PairMotion(NamedTuple):
     Parameters
     ----------
     mean : (2,) displacement less the stated gap [L]
-    spread : (2, 2) mean products of the differences from the mean [L²]
-    force : (2,) of the contact [p L]
+    spread : (2,) root mean square of its differences from the mean [L]
     bends : (2, 2) vectors [1/L] along and across the normal at the peak, as long as the curvature that counts
     turns : (2,) vector [1/L] across the normal at the peak, as long as the turn of common normals by a slide may be
     slides : (2,) vector [1/L] across the normal at the peak, one over the length of contact, unless both sides are flat
@@ -292,7 +278,6 @@ class PairMotion(NamedTuple):
 
     mean: Array
     spread: Array
-    force: Array
     bends: Array
     turns: Array
     slides: Array
@@ -331,14 +316,13 @@ def motions_of_pairs(
         force = abs(signed).sum()
         if force > 0:
             mean = (signed @ motion).sum(axis=0) / force
-            off = np.sign(signed)[..., None] * motion - mean
-            spread = np.einsum("kn,kni,knj->ij", abs(signed), off, off) / force
-            as_a_whole = spread, (signed @ contact.normals).sum(axis=0)
+            squares = (np.sign(signed)[..., None] * motion - mean) ** 2
+            spread = np.sqrt(np.einsum("kn,knd->d", abs(signed), squares) / force)
             share = abs(signed).sum(axis=0) / force
             peak, away = int(share.argmax()), contact.points - share @ contact.points
             length = max(OF_SEMI_ELLIPSE * float(np.sqrt(share @ away**2).max()), float(contact.weights[peak]))
             found |= {
-                name: PairMotion(each * mean, *as_a_whole, *_bends(touching[name], contact.points[peak, None], length))
+                name: PairMotion(each * mean, spread, *_bends(touching[name], contact.points[peak, None], length))
                 for name, each in signs.items()
             }
     return found
